@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Renders synthetic RGB-D sequences with exact ground truth of the camera and the objects.
+// Renders synthetic RGB-D and stereo sequences with exact ground truth of the camera and the
+// objects.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -95,6 +96,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "seed of textures, hand motion and noise; in a suite of the latter two")
       ->check(hullslam::WholeNumber(0))
       ->capture_default_str();
+  auto* const stereo =
+      app.add_option("--stereo", arguments.options.stereo_baseline,
+                     "also write the images of a second camera, this far to the right of the first "
+                     "one, m, into the folder right; 0: none")
+          ->type_name("BASELINE");
+  hullslam::ExpectNumber(*stereo->capture_default_str(), 0.0, 10.0);
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))
@@ -162,6 +169,7 @@ int RenderSuite(const Arguments& arguments) {
       .seed = arguments.options.seed,
       .only = arguments.only ? SplitAtCommas(*arguments.only) : std::vector<std::string>(),
       .force = arguments.options.force,
+      .stereo_baseline = arguments.options.stereo_baseline,
       .threads = arguments.options.threads};
   if (options.frames < 2) {
     throw hullslam::InputError("--frames: 1 given, expected at least 2 for a suite");

@@ -26,8 +26,10 @@ namespace fs = std::filesystem;
 SystemOptions OptionsOf(const SettingsTable& settings, const std::string& mode,
                         const std::optional<fs::path>& vocabulary, uint64_t seed) {
   SystemOptions options = settings.options;
-  options.sensor = Choose<SensorKind>(
-      "mode", mode, {{"rgbd", SensorKind::kRgbd}, {"mono", SensorKind::kMonocular}});
+  options.sensor = Choose<SensorKind>("mode", mode,
+                                      {{"rgbd", SensorKind::kRgbd},
+                                       {"mono", SensorKind::kMonocular},
+                                       {"stereo", SensorKind::kStereo}});
   options.seed = seed;
   if (vocabulary) {
     options.vocabulary = std::make_shared<const Vocabulary>(
@@ -75,14 +77,18 @@ std::vector<InstanceMask> MasksOf(const MaskList* masks, const cv::Mat& image) {
 }
 
 FrameReport Track(LiveSystem& system, const py::object& image, const py::object& depth,
-                  const MaskList* masks, double timestamp) {
+                  const MaskList* masks, const py::object& right, double timestamp) {
   const PinholeCamera& camera = system.options().camera;
   const cv::Size size(camera.width, camera.height);
   const PixelView pixels = ViewImage(image, "the image", size);
   const PixelView depths = ViewDepth(depth, size);
+  const PixelView rights =
+      right.is_none() ? PixelView() : ViewImage(right, "the right image", size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
-  return WithoutGil(
-      [&] { return system.Track(timestamp, pixels.image, depths.image, std::move(instances)); });
+  return WithoutGil([&] {
+    return system.Track(timestamp, pixels.image, {depths.image, rights.image},
+                        std::move(instances));
+  });
 }
 
 // Signals such as that of Ctrl+C are kept until the call returns, which they make return early.
@@ -187,7 +193,8 @@ void BindSystem(py::module_& module) {
            py::arg("pipeline") = "sequential", py::arg("vocabulary") = fs::path("default"),
            py::arg("map") = py::none(), py::arg("session") = "", py::arg("localization") = false,
            py::arg("seed") = 0,
-           "settings: Settings. mode: 'rgbd', or 'mono' for a camera without depth.\n"
+           "settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for\n"
+           "a rectified pair of cameras, whose left one the settings describe with Camera.bf.\n"
            "pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of\n"
            "its own; 'realtime' never waits for it, for live cameras.\n"
            "vocabulary: path of a vocabulary of visual words for loops and relocalisation;\n"
@@ -196,15 +203,17 @@ void BindSystem(py::module_& module) {
            "the map. localization: True to find poses in `map` without changing it.\n"
            "seed: seed of all random choices.")
       .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
-           py::arg("masks") = py::none(), py::kw_only(), py::arg("timestamp"),
+           py::arg("masks") = py::none(), py::kw_only(), py::arg("right") = py::none(),
+           py::arg("timestamp"),
            "Finds the pose of the camera in the next frame: TrackResult.\n\n"
            "image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV\n"
            "reads images (red first with the setting Camera.RGB). It is copied only if its rows\n"
            "are not contiguous, as in image[:, ::-1], and must not be changed meanwhile.\n"
            "depth: (height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in\n"
-           "metres, registered to the image; 0 or not finite where it is not known. None in the\n"
-           "mode 'mono'.\n"
+           "metres, registered to the image; 0 or not finite where it is not known. Only in the\n"
+           "mode 'rgbd'.\n"
            "masks: Masks of the objects in the image, or None.\n"
+           "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
            "timestamp: s, larger than that of the frame before.\n"
            "Raises InputError for anything else; a refused frame changes nothing.")
       .def("finish", &Finish,

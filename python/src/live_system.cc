@@ -81,7 +81,33 @@ System& LiveSystem::Open() const {
   return *system_;
 }
 
-FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+namespace {
+
+// Throws InputError unless a frame has the second image of its mode, and no other one.
+void CheckSecond(SensorKind sensor, const SecondImage& second) {
+  const bool needs_depth = sensor == SensorKind::kRgbd;
+  const bool needs_right = sensor == SensorKind::kStereo;
+  if (needs_depth && second.depth.empty()) {
+    throw InputError(
+        "depth is None, expected a depth image; a camera without depth has the mode "
+        "'mono'");
+  }
+  if (needs_right && second.right.empty()) {
+    throw InputError("right is None, expected the right image in the mode 'stereo'");
+  }
+  if (!needs_depth && !second.depth.empty()) {
+    throw InputError(std::string("there is a depth image, expected None in the mode '") +
+                     (needs_right ? "stereo'" : "mono'"));
+  }
+  if (!needs_right && !second.right.empty()) {
+    throw InputError(std::string("there is a right image, expected None in the mode '") +
+                     (needs_depth ? "rgbd'" : "mono'"));
+  }
+}
+
+}  // namespace
+
+FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const SecondImage& second,
                               std::vector<InstanceMask> masks) {
   const std::lock_guard lock(mutex_);
   System& system = Open();
@@ -98,16 +124,9 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const cv::
     throw InputError("timestamp is " + std::to_string(timestamp - *last_stamp_) +
                      " s after that of the last frame, expected seconds, not nanoseconds");
   }
-  const bool has_depth = options_.sensor == SensorKind::kRgbd;
-  if (has_depth && depth.empty()) {
-    throw InputError(
-        "depth is None, expected a depth image; a camera without depth has the mode "
-        "'mono'");
-  }
-  if (!has_depth && !depth.empty()) {
-    throw InputError("there is a depth image, expected None in the mode 'mono'");
-  }
-  system.Track(timestamp, image, depth, std::move(masks));
+  CheckSecond(options_.sensor, second);
+  system.Track(timestamp, image, second.right.empty() ? second.depth : second.right,
+               std::move(masks));
   last_stamp_ = timestamp;
   return std::exchange(report_, {});
 }

@@ -18,6 +18,12 @@ void CheckStamp(double timestamp);
 
 // A System for callers of any order: threads take turns, and a call that comes at the wrong time is
 // an InputError. All functions are called without the GIL, unless they say otherwise.
+// What a frame has beside its image; empty images are not given.
+struct SecondImage {
+  const cv::Mat& depth;
+  const cv::Mat& right;
+};
+
 class LiveSystem {
  public:
   // Throws as System does.
@@ -28,7 +34,7 @@ class LiveSystem {
 
   // Throws InputError after Finish() and for a time stamp that is not after the last one, and
   // otherwise as System::Track does. A refused frame changes nothing.
-  FrameReport Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+  FrameReport Track(double timestamp, const cv::Mat& image, const SecondImage& second,
                     std::vector<InstanceMask> masks);
   // `is_over` is asked from time to time whether to end early, see System::Finish.
   void Finish(const std::function<bool()>& is_over);

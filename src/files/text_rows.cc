@@ -64,9 +64,6 @@ void CheckLine(const TextRow& row, std::string_view line) {
   if (line.find('\0') != std::string_view::npos) {
     row.Fail("has a byte that is 0, expected text");
   }
-  if (HasDecimalCommas(line)) {
-    row.Fail("has semicolons and decimal commas, expected numbers with decimal points");
-  }
 }
 
 std::string Shown(std::string_view column) {
@@ -144,6 +141,9 @@ void ForEachRow(const std::filesystem::path& path,
     CheckLine(row, line);
     SplitColumns(line, row.columns);
     const bool is_comment = IsComment(row.columns);
+    if (!is_comment && HasDecimalCommas(line)) {
+      row.Fail("has semicolons and decimal commas, expected numbers with decimal points");
+    }
     if (is_first && (is_comment || NamesColumns(row.columns))) {
       row.header = line;
       names = is_comment ? std::nullopt : std::optional(row.line);

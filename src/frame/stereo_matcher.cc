@@ -14,7 +14,7 @@ namespace hullslam {
 namespace {
 
 // The constants are those of ORB-SLAM2.
-constexpr int kMostBits = 75;      // descriptors that differ in more bits do not match
+constexpr int kMostDifferentBits = 75;      // descriptors that differ in more bits do not match
 constexpr float kRowReach = 2.0F;  // rows at the level of the right keypoint
 constexpr int kHalfPatch = 5;      // px at the level of the left keypoint; the patch has 11 x 11
 constexpr int kReach = 5;          // px; columns to each side in which the patch is shifted
@@ -115,7 +115,7 @@ StereoMatcher::Found StereoMatcher::MatchOne(const StereoImage& left, const Ster
   const RawKeypoint& seen = left.features.keypoints[keypoint];
   const auto row = static_cast<size_t>(
       std::clamp(std::lround(seen.raw.y()), 0L, static_cast<long>(rows_.size()) - 1));
-  int least = kMostBits + 1;
+  int least = kMostDifferentBits + 1;
   const RawKeypoint* best = nullptr;
   for (const uint32_t i : rows_[row]) {
     const RawKeypoint& candidate = right.features.keypoints[i];

@@ -126,7 +126,7 @@ std::pair<std::string, std::string> FindKittiFolders(const fs::path& folder) {
                    SuggestFolder(folder, is_sequence));
 }
 
-double RateOf(const std::vector<FramePaths>& frames) {
+double MeanRate(const std::vector<FramePaths>& frames) {
   constexpr double kDefault = 10.0;  // KITTI's
   const double time = frames.back().timestamp - frames.front().timestamp;
   return time > 0.0 ? static_cast<double>(frames.size() - 1) / time : kDefault;
@@ -174,7 +174,7 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
   sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left, "P" + right);
   sequence.images.frames = ListKittiPairs(folder, folder / ("image_" + left),
                                           folder / ("image_" + right), sequence.images.warnings);
-  sequence.calibration.frames_per_second = RateOf(sequence.images.frames);
+  sequence.calibration.frames_per_second = MeanRate(sequence.images.frames);
   SetSize(sequence.images.frames.front().image, sequence.calibration.camera);
   sequence.images.groundtruth = FindKittiTruth(folder);
   SelectFrames(folder, selection, sequence.images);
@@ -185,7 +185,9 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
 
 ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& options) {
   std::error_code error;
-  const bool has_left = fs::is_directory(path / "left", error);
+  // make_synthetic writes the left images where its RGB-D sequences have them.
+  const fs::path left = fs::is_directory(path / "left", error) ? path / "left" : path / "rgb";
+  const bool has_left = fs::is_directory(left, error);
   const bool has_right = fs::is_directory(path / "right", error);
   if (has_left != has_right) {
     throw InputError(fmt::format("{}: has a folder {} but none {}, expected both", path.string(),
@@ -202,7 +204,7 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
     return halves;
   }
   ImageSequence sequence;
-  sequence.frames = PairByName(path / "left", path / "right", options.frames_per_second);
+  sequence.frames = PairByName(left, path / "right", options.frames_per_second);
   if (fs::is_regular_file(path / "groundtruth.txt", error)) {
     sequence.groundtruth = path / "groundtruth.txt";
   }

@@ -55,6 +55,8 @@ TEST(TextRows, DecimalCommasAreNamed) {
   const TemporaryFolder folder;
   const auto path = folder.Write("gt.txt", "1,5;2,5\n");
   ExpectInputError([&] { RowsOf(path); }, {"gt.txt:1: ", "decimal commas", "decimal points"});
+  EXPECT_EQ(RowsOf(folder.Write("gt.txt", "# rotated, aligned; no truth\n1 2\n")).size(), 1u)
+      << "a comment may have any text";
 }
 
 TEST(TextRows, NumbersAreFiniteAndFillTheirColumn) {

@@ -91,6 +91,59 @@ TEST_F(EurocSequenceTest, ListsTheImagesOfTheLeftCamera) {
   EXPECT_EQ(Open({.first = 1, .last = 1}).images.frames.front().number, 1U);
 }
 
+class EurocPairsTest : public EurocSequenceTest {
+ protected:
+  // The right camera has the same directions and is 0.11 m to the right, which is along y of the
+  // body.
+  EurocPairsTest() {
+    WriteRight({"1400000010500000000", "1400000011500000000", "1400000012500000000"});
+    folder_.Write("mav0/cam1/sensor.yaml", Replace(kSensor, "0.0, 0.0, 0.2", "0.0, 0.0, 0.31"));
+  }
+  void WriteRight(const std::vector<std::string>& stamps) {
+    std::string list = "#timestamp [ns],filename\n";
+    for (const std::string& stamp : stamps) {
+      list += stamp + "," + stamp + ".png\n";
+      folder_.Write("mav0/cam1/data/" + stamp + ".png", "");
+    }
+    folder_.Write("mav0/cam1/data.csv", list);
+  }
+};
+
+TEST_F(EurocPairsTest, BothCamerasAreReadAndRectified) {
+  WriteStates("1400000010500000000,1,2,3,1,0,0,0\n");
+  const StereoSequence sequence = OpenEurocPairs(folder_.path());
+  ASSERT_EQ(sequence.images.frames.size(), 3u);
+  EXPECT_EQ(sequence.images.frames[2].right,
+            folder_.path() / "mav0/cam1/data/1400000012500000000.png");
+  const PinholeCamera& camera = sequence.calibration.camera;
+  EXPECT_NEAR(camera.bf / camera.fx, 0.11, 1e-9);
+  EXPECT_FALSE(camera.IsDistorted());
+  const Rigid3 pose = sequence.images.converted_groundtruth->front().world_from_cam;
+  EXPECT_TRUE(pose.translation.isApprox(Eigen::Vector3d(1.1, 2.2, 3.3), 1e-9))
+      << "the rectified camera has the centre of the left one";
+}
+
+TEST_F(EurocPairsTest, ImagesWithoutPartnerAreLeftOutOrRefused) {
+  WriteRight({"1400000010500000000", "1400000012501000000"});
+  const StereoSequence sequence = OpenEurocPairs(folder_.path());
+  EXPECT_EQ(sequence.images.frames.size(), 2u);
+  ASSERT_EQ(sequence.images.warnings.size(), 1u);
+  EXPECT_NE(sequence.images.warnings[0].find("1 of 3 images"), std::string::npos);
+  WriteRight({"1400000010530000000", "1400000011530000000", "1400000012530000000"});
+  ExpectInputError([&] { OpenEurocPairs(folder_.path()); },
+                   {"0 of 3 images", "2.5 ms", "synchronised"});
+}
+
+TEST_F(EurocPairsTest, CamerasThatAreNoPairAreRefused) {
+  const auto expect = [&](const std::string& sensor, const std::vector<std::string>& parts) {
+    folder_.Write("mav0/cam1/sensor.yaml", sensor);
+    ExpectInputError([&] { OpenEurocPairs(folder_.path()); }, parts);
+  };
+  expect(kSensor, {"the baseline is 0 m"});
+  expect(Replace(kSensor, "0.0, 0.0, 0.2", "0.0, 0.0, 0.1"), {"swapped"});
+  expect(Replace(kSensor, "[752, 480]", "[640, 480]"), {"equal sizes"});
+}
+
 TEST_F(EurocSequenceTest, TheSensorFileGivesTheCamera) {
   const EurocCamera read = Open().camera;
   const PinholeCamera& camera = read.calibration.camera;

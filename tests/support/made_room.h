@@ -48,8 +48,13 @@ class MadeRoom {
     cv::Mat depth;     // CV_16UC1, 5000 units per metre, along z
   };
 
-  Images Render(int frame) const {
-    const Rigid3 pose = Pose(frame);
+  Images Render(int frame) const { return Render(Pose(frame)); }
+  // The image of a second camera that is `baseline` (m) to the right.
+  cv::Mat RenderRight(int frame, double baseline) const {
+    return Render(Pose(frame) * Rigid3{Eigen::Quaterniond::Identity(), {baseline, 0.0, 0.0}}).grey;
+  }
+
+  Images Render(const Rigid3& pose) const {
     Images images{cv::Mat(camera_.height, camera_.width, CV_8UC1),
                   cv::Mat(camera_.height, camera_.width, CV_64FC1),
                   cv::Mat(camera_.height, camera_.width, CV_16UC1)};
@@ -91,8 +96,22 @@ class MadeRoom {
     }
   }
 
+  // Writes the left and right images into two folders of the sequence, and their true poses.
+  void WritePairs(const std::filesystem::path& folder, const std::string& left,
+                  const std::string& right, int frames, double baseline) const {
+    std::filesystem::create_directories(folder / left);
+    std::filesystem::create_directories(folder / right);
+    std::ofstream truth(folder / "groundtruth.txt");
+    for (int i = 0; i < frames; ++i) {
+      const std::string name = fmt::format("{:06}.png", i);
+      cv::imwrite((folder / left / name).string(), Render(i).grey);
+      cv::imwrite((folder / right / name).string(), RenderRight(i, baseline));
+      truth << FormatPose(0.1 * i, Pose(i));
+    }
+  }
+
  private:
-  static std::string FormatPose(int stamp, const Rigid3& pose) {
+  static std::string FormatPose(double stamp, const Rigid3& pose) {
     const Eigen::Vector3d& t = pose.translation;
     const Eigen::Quaterniond& q = pose.rotation;
     return fmt::format("{} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f}\n", stamp, t.x(), t.y(),

@@ -41,10 +41,11 @@ std::string SequenceLayout::ImagesFromTumFolder() const {
 }
 
 bool SequenceLayout::IsEntry(std::string_view entry, std::string_view name) const {
-  static constexpr std::array<std::string_view, 8> kTumEntries = {
+  static constexpr std::array<std::string_view, 9> kTumEntries = {
       "rgb",       "depth",       "masks",           "rgb.txt",
-      "depth.txt", "camera.yaml", "groundtruth.txt", "groundtruth_objects.json"};
-  static constexpr std::array<std::string_view, 4> kIclEntries = {"rgb", "depth",
+      "depth.txt", "camera.yaml", "groundtruth.txt", "groundtruth_objects.json",
+      "right"};
+  static constexpr std::array<std::string_view, 5> kIclEntries = {"rgb", "depth", "right",
                                                                   "associations.txt", "tum"};
   return form == DatasetForm::kTum
              ? Contains(kTumEntries, entry)

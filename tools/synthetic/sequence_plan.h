@@ -20,8 +20,9 @@ struct SequencePlan {
   Scene scene;
   int frames = 0;
   PinholeCamera camera;
-  double readout_time = 0.0;   // s, from the top to the bottom row of an image (rolling shutter)
-  double exposure_time = 0.0;  // s, of each row; 0 for images without motion blur
+  double stereo_baseline = 0.0;  // m, to the right camera of a stereo pair; 0 for none
+  double readout_time = 0.0;     // s, from the top to the bottom row of an image (rolling shutter)
+  double exposure_time = 0.0;    // s, of each row; 0 for images without motion blur
   Sensor::Options sensor;
   uint64_t sensor_seed = 0;
   SequenceLayout layout;

@@ -9,11 +9,13 @@
 #include <iterator>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "synthetic/hash_noise.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"
@@ -47,13 +49,42 @@ std::string MaskText(const Scene& scene, const cv::Mat& instance) {
   return text;
 }
 
-void WriteFrame(const SequencePlan& plan, const Renderer& renderer, const Sensor& sensor, int frame,
-                const fs::path& folder) {
+// A camera that renders a scene along its path.
+struct Eye {
+  const Scene& scene;
+  const Renderer& renderer;
+  const Sensor& sensor;
+};
+
+RenderedFrame RenderBlurred(const SequencePlan& plan, const Eye& eye, int frame) {
   const double time = frame / kFramesPerSecond;
-  RenderedFrame rendered = renderer.Render(time);
+  RenderedFrame rendered = eye.renderer.Render(time);
   rendered.colour = BlurByMotion(
-      rendered, plan.scene, plan.camera,
+      rendered, eye.scene, plan.camera,
       {.time = time, .readout_time = plan.readout_time, .duration = plan.exposure_time});
+  return rendered;
+}
+
+// The scene as the right camera of a stereo pair sees it: its path is beside that of the left one.
+Scene SceneOfRight(const SequencePlan& plan) {
+  Scene scene = plan.scene;
+  scene.world_from_cam = [left = plan.scene.world_from_cam,
+                          baseline = plan.stereo_baseline](double time) {
+    const Rigid3 right_in_left{Eigen::Quaterniond::Identity(), {baseline, 0.0, 0.0}};
+    return left(time) * right_in_left;
+  };
+  return scene;
+}
+
+void WriteRight(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
+  WriteNewFile(
+      folder / "right" / (plan.layout.Stem(frame) + ".png"),
+      Png(eye.sensor.Colour(RenderBlurred(plan, eye, frame), static_cast<uint32_t>(frame))));
+}
+
+void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
+  const RenderedFrame rendered = RenderBlurred(plan, eye, frame);
+  const Sensor& sensor = eye.sensor;
   const std::string stem = plan.layout.Stem(frame);
   const auto number = static_cast<uint32_t>(frame);
   WriteNewFile(folder / "rgb" / (stem + ".png"), Png(sensor.Colour(rendered, number)));
@@ -112,9 +143,22 @@ bool RenderSequence(const fs::path& folder, const SequencePlan& plan, int thread
   fs::create_directories(folder / plan.layout.TumFolder() / "masks");
   const Renderer renderer(plan.scene, plan.camera, plan.readout_time);
   const Sensor sensor(plan.sensor, plan.sensor_seed);
+  const bool is_stereo = plan.stereo_baseline > 0.0;
+  const Scene right_scene = is_stereo ? SceneOfRight(plan) : Scene();
+  std::optional<Renderer> right_renderer;
+  const Sensor right_sensor(plan.sensor, HashSeed(plan.sensor_seed, 0, "right"));
+  if (is_stereo) {
+    fs::create_directory(folder / "right");
+    right_renderer.emplace(right_scene, plan.camera, plan.readout_time);
+  }
   const int workers =
       threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const auto write = [&](int frame) { WriteFrame(plan, renderer, sensor, frame, folder); };
+  const auto write = [&](int frame) {
+    WriteFrame(plan, {plan.scene, renderer, sensor}, frame, folder);
+    if (is_stereo) {
+      WriteRight(plan, {right_scene, *right_renderer, right_sensor}, frame, folder);
+    }
+  };
   if (!ForEachFrame(plan.frames, workers, write, progress)) {
     return false;
   }

@@ -28,13 +28,21 @@ bool IsFormerSequence(const fs::path& folder) {
   return json.is_object() && json.contains("generator") && json["generator"] == "make_synthetic";
 }
 
+// The baseline of the camera's settings is that of the stereo pair, if it is one.
+PinholeCamera CameraWith(double stereo_baseline) {
+  PinholeCamera camera = SyntheticCamera();
+  camera.bf = stereo_baseline > 0.0 ? stereo_baseline * camera.fx : camera.bf;
+  return camera;
+}
+
 SequencePlan MakePlan(const SequenceOptions& options) {
   return {.name = std::string(SceneName(options.scene)),
           .seed = options.seed,
           .rearranged = options.rearranged,
           .scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged),
           .frames = options.frames,
-          .camera = SyntheticCamera(),
+          .camera = CameraWith(options.stereo_baseline),
+          .stereo_baseline = options.stereo_baseline,
           .readout_time = options.readout_time,
           .sensor = {.noise = options.noise},
           .sensor_seed = VisitSeed(options.seed, options.rearranged),

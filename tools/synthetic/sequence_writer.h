@@ -19,7 +19,9 @@ struct SequenceOptions {
   bool force = false;         // allows replacing a folder that an earlier run wrote
   bool noise = true;          // whether the sensor has noise
   double readout_time = 0.0;  // s, from the top to the bottom row of an image (rolling shutter)
-  int threads = 0;            // 0: as many as the CPU supports
+  // m; above 0, a stereo camera has a second camera with the same directions as far to the right
+  double stereo_baseline = 0.0;
+  int threads = 0;  // 0: as many as the CPU supports
 };
 
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.

@@ -82,7 +82,11 @@ bool WriteSuite(const fs::path& folder, const SuiteOptions& options,
     for (const SuiteSequence* const sequence : sequences) {
       const fs::path target = content / sequence->name;
       fs::create_directory(target);
-      const SequencePlan plan = PlanOf(*sequence, options.frames, options.seed);
+      SequencePlan plan = PlanOf(*sequence, options.frames, options.seed);
+      if (options.stereo_baseline > 0.0) {
+        plan.stereo_baseline = options.stereo_baseline;
+        plan.camera.bf = options.stereo_baseline * plan.camera.fx;
+      }
       if (!RenderSequence(target, plan, options.threads,
                           [&](int frames) { return progress(sequence->name, done + frames); })) {
         return false;

@@ -16,6 +16,7 @@ struct SuiteOptions {
   uint64_t seed = 0;
   std::vector<std::string> only = {};  // names of sequences; empty for all
   bool force = false;                  // allows replacing a folder that an earlier run wrote
+  double stereo_baseline = 0.0;        // m, as in SequenceOptions
   int threads = 0;                     // 0: as many as the CPU supports
 };
 

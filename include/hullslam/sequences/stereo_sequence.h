@@ -31,11 +31,11 @@ struct StereoFolderOptions {
   FrameSelection selection = {};
 };
 
-// Opens pairs of two forms: a folder with the subfolders `left` and `right`, whose images have the
-// same names, or are equally many; or a video or a folder of images that show both halves of a pair
-// side by side, the left one first. Stamps are those of the names if they are seconds or
-// nanoseconds, else index / frames_per_second; those of a video are its own. Throws InputError for
-// anything else, and for an image without partner.
+// Opens pairs of two forms: a folder with the subfolders `left` (or `rgb`) and `right`, whose
+// images have the same names, or are equally many; or a video or a folder of images that show both
+// halves of a pair side by side, the left one first. Stamps are those of the names if they are
+// seconds or nanoseconds, else index / frames_per_second; those of a video are its own. Throws
+// InputError for anything else, and for an image without partner.
 ImageSequence OpenStereoFolder(const std::filesystem::path& path,
                                const StereoFolderOptions& options = {});
 

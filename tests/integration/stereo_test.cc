@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "support/made_room.h"
+#include "support/mono_program.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 12;
+constexpr double kBaseline = 0.12;  // m
+constexpr double kSmall = 0.010;    // m
+
+// Programs for stereo cameras, in a room of 3.2 x 2.6 x 4.4 m.
+class Stereo : public MonoProgram {
+ protected:
+  explicit Stereo(const std::string& name = "stereo_folder") : MonoProgram(name) {}
+
+  // Expects exit code 0 and a pose for every frame.
+  ProgramResult ExpectMapOf(const Arguments& arguments) const {
+    ProgramResult result = Run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(Summary()["trajectory"]["coverage"], 1.0);
+    return result;
+  }
+  double Ate() const { return Summary()["trajectory"]["ate_rmse_m"].get<double>(); }
+  std::string WriteSettings(double baseline) {
+    const PinholeCamera& camera = room_.camera();
+    return folder_.Write(
+        "camera.yaml",
+        fmt::format("Camera.fx: {}\nCamera.fy: {}\nCamera.cx: {}\nCamera.cy: {}\nCamera.width: {}\n"
+                    "Camera.height: {}\nCamera.fps: 10\nCamera.bf: {}\n",
+                    camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height,
+                    baseline * camera.fx));
+  }
+  double Scale() const {
+    const Trajectory poses = Poses();
+    const double moved =
+        (poses.back().world_from_cam.translation - poses.front().world_from_cam.translation).norm();
+    return moved / (MadeRoom::Pose(kFrames - 1).translation - MadeRoom::Pose(0).translation).norm();
+  }
+
+  MadeRoom room_;
+};
+
+TEST_F(Stereo, AFolderOfPairsIsTrackedInMetres) {
+  room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  const ProgramResult result = ExpectMapOf({path_, "--settings", WriteSettings(kBaseline)});
+  ExpectParts(result.output, {"stereo: baseline 0.1200 m"});
+  EXPECT_LT(Ate(), kSmall);
+  EXPECT_EQ(Summary()["trajectory"]["alignment"], "se3");
+  EXPECT_NEAR(Scale(), 1.0, 0.01);
+}
+
+TEST_F(Stereo, WrongPairsAreRefusedBeforeTheFirstFrame) {
+  room_.WritePairs(path_, "left", "right", 3, kBaseline);
+  const std::string settings = WriteSettings(kBaseline);
+  ExpectRefusal({path_}, {path_, "has no camera.yaml", "--settings FILE"});
+  fs::rename(fs::path(path_) / "left", fs::path(path_) / "other");
+  fs::rename(fs::path(path_) / "right", fs::path(path_) / "left");
+  fs::rename(fs::path(path_) / "other", fs::path(path_) / "right");
+  ExpectRefusal({path_, "--settings", settings}, {path_, "left and right are swapped"});
+  fs::remove_all(fs::path(path_) / "right");
+  fs::copy(fs::path(path_) / "left", fs::path(path_) / "right");
+  ExpectRefusal({path_, "--settings", settings}, {path_, "the same image"});
+  ExpectRefusal({path_, "--settings", WriteSettings(0.0)}, {"Camera.bf"});
+}
+
+class StereoEuroc : public Stereo {
+ protected:
+  StereoEuroc() : Stereo("stereo_euroc") {}
+};
+
+TEST_F(StereoEuroc, ARealPairIsTracked) {
+  const auto data = FindTestData("zed2_realtime_105");
+  if (!data) {
+    GTEST_SKIP() << "the pair of a ZED 2 is not on this machine";
+  }
+  const ProgramResult result = ExpectMapOf({data->string(), "--last", "40"});
+  ExpectParts(result.output, {"stereo: baseline 0.1200 m"});
+  EXPECT_LT(Ate(), 0.01);
+}
+
+class StereoKitti : public Stereo {
+ protected:
+  StereoKitti() : Stereo("stereo_kitti") {}
+};
+
+TEST_F(StereoKitti, ARealPairIsTracked) {
+  const auto data = FindTestData("kitti_pairs_seq1");
+  if (!data) {
+    GTEST_SKIP() << "the pairs of KITTI are not on this machine";
+  }
+  ExpectMapOf({data->string()});
+  EXPECT_LT(Ate(), 0.15) << "of 59.9 m";
+}
+
+}  // namespace
+}  // namespace hullslam

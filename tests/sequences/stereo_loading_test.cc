@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/stereo_loading.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
+  StereoCalibration calibration;
+  calibration.left = {.fx = 60.0, .fy = 60.0, .cx = 40.0, .cy = 30.0, .width = 80, .height = 60};
+  calibration.right = calibration.left;
+  calibration.right.cy = 34.0;  // points lie 4 px lower in the right image
+  calibration.right_from_left.translation = {-0.1, 0.0, 0.0};
+  const auto rectifier = std::make_shared<const StereoRectifier>(calibration, "test");
+  const TemporaryFolder folder;
+  cv::Mat left(60, 80, CV_8UC1, cv::Scalar(0));
+  cv::Mat right = left.clone();
+  left.row(20) = cv::Scalar(200);
+  right.row(24) = cv::Scalar(200);
+  FramePaths frame{1.0, folder.path() / "left.png"};
+  frame.right = folder.path() / "right.png";
+  cv::imwrite(frame.image.string(), left);
+  cv::imwrite(frame.right.string(), right);
+  ImageSequence sequence;
+  LoadPairs(rectifier, sequence);
+  const ImageInput pair = sequence.load(frame, rectifier->camera());
+  EXPECT_EQ(pair.timestamp, 1.0);
+  EXPECT_GT(cv::norm(pair.grey), 0.0);
+  EXPECT_LT(cv::norm(pair.grey, pair.right, cv::NORM_INF), 3.0) << "the lines are in equal rows";
+  EXPECT_EQ(sequence.load_colour(frame).type(), CV_8UC3);
+  InstanceMask mask;
+  mask.outlines = {{{40.0, 20.0}, {50.0, 20.0}, {50.0, 25.0}}};
+  sequence.fit_mask(mask);
+  EXPECT_GT(
+      pair.grey.at<uint8_t>(cv::Point(40, static_cast<int>(std::lround(mask.outlines[0][0].y())))),
+      100)
+      << "the mask follows the line";
+  PinholeCamera other = rectifier->camera();
+  other.width = 40;
+  ExpectInputError([&] { sequence.load(frame, other); }, {"left.png", "80x60", "40x60"});
+}
+
+TEST(StereoLoading, RectifiedPairsNeedNothing) {
+  ImageSequence sequence;
+  LoadPairs(nullptr, sequence);
+  EXPECT_EQ(sequence.fit_mask, nullptr);
+  EXPECT_EQ(sequence.load_colour, nullptr);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/stereo_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StereoSequenceTest : public ::testing::Test {
+ protected:
+  void WriteImage(const std::string& name, int grey = 100, int width = 20) {
+    const fs::path path = folder_.path() / name;
+    fs::create_directories(path.parent_path());
+    cv::imwrite(path.string(), cv::Mat(10, width, CV_8UC1, cv::Scalar(grey)));
+  }
+  // Two pairs of KITTI with a baseline of 0.5 m.
+  void WriteKitti() {
+    for (const char* const name : {"000000.png", "000001.png"}) {
+      WriteImage(std::string("image_0/") + name, 100);
+      WriteImage(std::string("image_1/") + name, 200);
+    }
+    folder_.Write("calib.txt", kCalibration);
+    folder_.Write("times.txt", "0.0\n1.0e-01\n");
+  }
+  void ExpectKittiError(const std::vector<std::string>& parts) {
+    ExpectInputError([&] { OpenKittiPairs(folder_.path()); }, parts);
+  }
+
+  static constexpr const char* kCalibration =
+      "P0: 700 0 10 0 0 700 5 0 0 0 1 0\nP1: 700 0 10 -350 0 700 5 0 0 0 1 0\n"
+      "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
+  TemporaryFolder folder_;
+};
+
+TEST_F(StereoSequenceTest, KittiIsReadWithCalibrationTimesAndTruth) {
+  WriteKitti();
+  folder_.Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0.5\n");
+  const StereoSequence sequence = OpenKittiPairs(folder_.path());
+  const PinholeCamera& camera = sequence.calibration.camera;
+  EXPECT_EQ(camera.fx, 700.0);
+  EXPECT_EQ(camera.cy, 5.0);
+  EXPECT_EQ(camera.bf, 350.0);
+  EXPECT_EQ(camera.width, 20);
+  EXPECT_DOUBLE_EQ(sequence.calibration.frames_per_second, 10.0);
+  ASSERT_EQ(sequence.images.frames.size(), 2u);
+  EXPECT_EQ(sequence.images.frames[1].timestamp, 0.1);
+  const ImageInput pair = sequence.images.load(sequence.images.frames[1], camera);
+  EXPECT_EQ(pair.grey.at<uint8_t>(0, 0), 100);
+  EXPECT_EQ(pair.right.at<uint8_t>(0, 0), 200);
+  const auto truth = ReadGroundtruth(sequence.images);
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(truth->back().timestamp, 0.1);
+  EXPECT_EQ(truth->back().world_from_cam.translation.z(), 0.5);
+}
+
+TEST_F(StereoSequenceTest, TheTruthOfKittiMayLieBesideTheSequences) {
+  WriteKitti();
+  const fs::path sequence = folder_.path() / "sequences" / "07";
+  fs::create_directories(sequence);
+  for (const char* const name : {"image_0", "image_1", "calib.txt", "times.txt"}) {
+    fs::rename(folder_.path() / name, sequence / name);
+  }
+  folder_.Write("poses/07.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0.5\n");
+  EXPECT_EQ(ReadGroundtruth(OpenKittiPairs(sequence).images)->size(), 2u);
+}
+
+TEST_F(StereoSequenceTest, BrokenFilesOfKittiAreRefused) {
+  ExpectKittiError({"has no folder image_0", "KITTI"});
+  WriteKitti();
+  folder_.Write("calib.txt", "P0: 700 0 10 0 0 700 5 0 0 0 1 0\n");
+  ExpectKittiError({"calib.txt", "'P0:' and 'P1:'"});
+  folder_.Write("calib.txt", "P0: 700 0 10\n");
+  ExpectKittiError({"calib.txt:1: 4 column(s), expected 13"});
+  folder_.Write("calib.txt", "P0: 700 0 10 0 0 x 5 0 0 0 1 0\n");
+  ExpectKittiError({"calib.txt:1: ", "'x'"});
+  folder_.Write("calib.txt",
+                "P1: 700 0 10 0 0 700 5 0 0 0 1 0\nP0: 700 0 10 -350 0 700 5 0 0 0 1 0\n");
+  ExpectKittiError({"calib.txt", "swapped"});
+  folder_.Write("calib.txt", kCalibration);
+  folder_.Write("times.txt", "0.0\n");
+  ExpectKittiError({"times.txt: has 1 times", "2 images"});
+  folder_.Write("times.txt", "0.0\n0.1\n");
+  fs::remove(folder_.path() / "image_1/000001.png");
+  ExpectKittiError({"image_1/000001.png: the image is missing"});
+}
+
+TEST_F(StereoSequenceTest, FoldersOfPairsAreReadByTheirNames) {
+  for (const char* const name : {"1.png", "2.png", "10.png"}) {
+    WriteImage(std::string("left/") + name, 10);
+    WriteImage(std::string("right/") + name, 20);
+  }
+  const ImageSequence sequence = OpenStereoFolder(folder_.path(), {.frames_per_second = 10.0});
+  ASSERT_EQ(sequence.frames.size(), 3u);
+  EXPECT_EQ(sequence.frames[2].image.filename(), "10.png");
+  EXPECT_EQ(sequence.frames[2].right.filename(), "10.png");
+  EXPECT_DOUBLE_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 0.1);
+  fs::remove(folder_.path() / "right/2.png");
+  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"left/2.png: has no partner"});
+  fs::remove_all(folder_.path() / "right");
+  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"a folder left but none right"});
+}
+
+TEST_F(StereoSequenceTest, FoldersWithOtherNamesMustHaveAsManyImages) {
+  WriteImage("left/l1.png");
+  WriteImage("left/l2.png");
+  WriteImage("right/r1.png");
+  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"2 images", "1 with other names"});
+  WriteImage("right/r2.png");
+  EXPECT_EQ(OpenStereoFolder(folder_.path()).frames[1].right.filename(), "r2.png");
+}
+
+TEST_F(StereoSequenceTest, ImagesSideBySideAreSplit) {
+  cv::Mat both(10, 40, CV_8UC1, cv::Scalar(10));
+  both.colRange(20, 40) = cv::Scalar(20);
+  cv::imwrite((folder_.path() / "0.png").string(), both);
+  const ImageSequence sequence = OpenStereoFolder(folder_.path());
+  PinholeCamera camera{.fx = 20.0, .fy = 20.0, .cx = 10.0, .cy = 5.0, .width = 20, .height = 10};
+  const ImageInput pair = sequence.load(sequence.frames[0], camera);
+  EXPECT_EQ(pair.grey.cols, 20);
+  EXPECT_EQ(pair.grey.at<uint8_t>(5, 19), 10);
+  EXPECT_EQ(pair.right.at<uint8_t>(5, 0), 20);
+  EXPECT_EQ(sequence.load_colour(sequence.frames[0]).cols, 20);
+  camera.width = 40;
+  ExpectInputError([&] { sequence.load(sequence.frames[0], camera); }, {"40x10", "80x10"});
+}
+
+}  // namespace
+}  // namespace hullslam
