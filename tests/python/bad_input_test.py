@@ -94,6 +94,16 @@ def test_a_depth_image_of_a_monocular_camera(settings):
     refuse("there is a depth image, expected None", slam.track, IMAGE, DEPTH, timestamp=0.0)
 
 
+def test_the_second_image_is_that_of_the_mode(settings, slam):
+    refuse("there is a right image, expected None in the mode 'rgbd'",
+           slam.track, IMAGE, DEPTH, right=IMAGE, timestamp=0.0)
+    stereo = hullslam.System(settings, "stereo")
+    refuse("right is None, expected the right image", stereo.track, IMAGE, timestamp=0.0)
+    refuse("there is a depth image, expected None in the mode 'stereo'",
+           stereo.track, IMAGE, DEPTH, right=IMAGE, timestamp=0.0)
+    refuse("the right image is 320x239 px", stereo.track, IMAGE, right=IMAGE[:-1], timestamp=0.0)
+
+
 def test_a_depth_image_without_any_depth_is_waited_out(slam):
     unknown = np.full_like(DEPTH, np.nan)
     assert slam.track(IMAGE, unknown, timestamp=0.0).state == "initialising"
@@ -190,7 +200,7 @@ def test_labels_and_outlines():
 
 
 @pytest.mark.parametrize("keywords, expected", [
-    ({"mode": "stereo"}, "mode is 'stereo', expected one of: rgbd, mono"),
+    ({"mode": "lidar"}, "mode is 'lidar', expected one of: rgbd, mono, stereo"),
     ({"pipeline": "fast"}, "pipeline is 'fast', expected one of: sequential, threaded, realtime"),
     ({"vocabulary": "none.bow"}, "none.bow"),
     ({"map": "none.map"}, "none.map"),

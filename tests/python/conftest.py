@@ -56,9 +56,9 @@ class Wall:
         phase = 2.0 * np.pi * index / Wall.PERIOD
         return np.array([0.1 * np.sin(phase), 0.05 * (1.0 - np.cos(phase)), 0.0])
 
-    def _photograph(self, index):
+    def _photograph(self, index, baseline=0.0):
         pixels = self.TEXELS * self.DISTANCE / CAMERA["fx"]  # texels per pixel
-        x, y, _ = self.center(index) * self.TEXELS
+        x, y, _ = (self.center(index) + [baseline, 0.0, 0.0]) * self.TEXELS
         pixel_to_texel = np.array([[pixels, 0.0, 300 + x - pixels * CAMERA["cx"]],
                                    [0.0, pixels, 225 + y - pixels * CAMERA["cy"]]])
         return cv2.warpAffine(self.texture, pixel_to_texel, (WIDTH, HEIGHT),
@@ -67,6 +67,10 @@ class Wall:
     def image(self, index):
         """(HEIGHT, WIDTH) uint8"""
         return self.images[index % self.PERIOD]
+
+    def right(self, index, baseline):
+        """The image of a second camera, `baseline` m to the right."""
+        return self._photograph(index, baseline)
 
     def masks(self, index):
         x, y, _ = self.center(index) * CAMERA["fx"] / self.DISTANCE

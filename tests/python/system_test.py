@@ -63,6 +63,17 @@ def test_a_monocular_camera_says_why_it_has_no_map(settings, wall):
     assert result.state == "initialising" and result.reason == "too few matches"
 
 
+def test_a_stereo_camera_measures_the_distance(settings, wall):
+    settings["Camera.bf"] = 0.1 * 260.0
+    slam = hullslam.System(settings, "stereo")
+    for i in range(12):
+        result = slam.track(wall.image(i), right=wall.right(i, 0.1), timestamp=i / 30.0)
+    assert result.state == "tracked"
+    assert result.world_from_cam[:3, 3] == pytest.approx(Wall.center(11), abs=0.01)
+    slam.finish()
+    assert np.median(slam.map.landmarks["position"][:, 2]) == pytest.approx(2.0, abs=0.05)
+
+
 def test_the_map_has_landmarks_keyframes_and_observations(slam, wall):
     wall.track(slam, 0, 20, masks=True)
     slam.finish()
