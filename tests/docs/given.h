@@ -40,6 +40,7 @@ class DocsExample : public testing::Test {
       stamps.push_back(frame.timestamp);
       images.push_back(cv::imread(frame.image.string()));
       depths.push_back(cv::imread(frame.depth.string(), cv::IMREAD_UNCHANGED));
+      right_images.push_back(images.back());  // as of a baseline that is too short to measure
       masks.push_back(masks_);
       const double x = 0.01 * static_cast<double>(poses.size());  // m, as in the sequence
       poses.push_back({Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)});
@@ -71,6 +72,7 @@ class DocsExample : public testing::Test {
   std::vector<double> stamps;
   std::vector<cv::Mat> images;
   std::vector<cv::Mat> depths;
+  std::vector<cv::Mat> right_images;
   std::vector<std::vector<hullslam::InstanceMask>> masks;
   std::vector<hullslam::Rigid3> poses;  // world_from_cam
   std::vector<hullslam::ImageInput> inputs;
