@@ -326,7 +326,8 @@ class System:
                  pipeline: Literal["sequential", "threaded", "realtime"] = "sequential",
                  vocabulary: _Path | None = "default", map: _Path | None = None,
                  session: str = "", localization: bool = False, seed: int = 0) -> None:
-        """settings: Settings. mode: 'rgbd', or 'mono' for a camera without depth.
+        """settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for
+        a rectified pair of cameras, whose left one the settings describe with Camera.bf.
         pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of
         its own; 'realtime' never waits for it, for live cameras.
         vocabulary: path of a vocabulary of visual words for loops and relocalisation;
@@ -343,9 +344,10 @@ class System:
         reads images (red first with the setting Camera.RGB). It is copied only if its rows
         are not contiguous, as in image[:, ::-1], and must not be changed meanwhile.
         depth: (height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in
-        metres, registered to the image; 0 or not finite where it is not known. None in the
-        mode 'mono'.
+        metres, registered to the image; 0 or not finite where it is not known. Only in the
+        mode 'rgbd'.
         masks: Masks of the objects in the image, or None.
+        right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
         timestamp: s, larger than that of the frame before.
         Raises InputError for anything else; a refused frame changes nothing.
         """

@@ -73,8 +73,6 @@ class _loop:
     """close loops when the camera comes back to a known place; needs a vocabulary (true or false (1 or 0); default true)"""
     drift_base: float
     """a loop may always move the camera by this, m; without depth, the median depth of the scene counts as a metre (a number >= 0; default 0.2)"""
-    drift_per_metre: float
-    """and by this much more for each metre travelled since the candidate, m (a number >= 0; default 0.05)"""
     global_adjustment: bool
     """adjust the whole map after a loop was closed (true or false (1 or 0); default true)"""
     min_landmarks: int
@@ -105,28 +103,8 @@ class _mapping:
     """largest number of keyframes that local bundle adjustment moves (an integer >= 2; default 20)"""
 
 class _objects_association:
-    centroid_weight: float
-    """weight of agreeing centroids of depth points (t-test) in the similarity (a number from 0 to 1; default 0.1)"""
-    class_weight: float
-    """weight of the share of votes for the detection's class in the similarity (a number from 0 to 1; default 0.2)"""
-    cloud_weight: float
-    """weight of agreeing clouds of depth points (rank-sum test) in the similarity (a number from 0 to 1; default 0.1)"""
-    iou_weight: float
-    """weight of the larger IoU in the similarity (a number from 0 to 1; default 0.6)"""
-    landmark_weight: float
-    """weight of the share of common landmarks in the similarity (a number from 0 to 1; default 0.2)"""
     measure: Literal["combined", "class_overlap", "wasserstein"]
-    """how detections and objects are compared (docs/objects.md); the other keys of objects.association are those of the measure combined (one of: combined, class_overlap, wasserstein; default combined)"""
-    min_carried_iou: float
-    """a detection matches an object if the IoU of its hull and the object's last hull, moved to the new pose, is at least this (a number from 0 to 1; default 0.5)"""
-    min_depth_iou: float
-    """if the depth points agree, a detection matches an object if the larger of the two IoUs is above this (a number from 0 to 1; default 0.1)"""
-    min_projection_iou: float
-    """a detection matches an object if the IoU of its hull and the projected ellipse is at least this (a number from 0 to 1; default 0.25)"""
-    min_shared_ratio: float
-    """a detection matches an object if their share of common landmarks is at least this (a number from 0 to 1; default 0.5)"""
-    min_similarity: float
-    """least similarity of a detection and an object that are matched (a number from 0 to 1; default 0.2)"""
+    """how detections and objects are compared (docs/objects.md) (one of: combined, class_overlap, wasserstein; default combined)"""
 
 class _objects_bundle:
     depth_points: int
@@ -165,8 +143,6 @@ class _objects_culling:
     """a keyframe should show an object only up to this many times the largest distance at which the object was observed (a number from 0 to 1000; default 1.25)"""
     min_found_ratio: float
     """a mapped object is removed if it is found in a smaller share of the keyframes that should show it (a number from 0 to 1; default 0.25)"""
-    min_visible: int
-    """keyframes that should show a mapped object before it can be removed (an integer from 1 to 1e+06; default 10)"""
 
 class _objects_detection:
     border_px: float
@@ -177,8 +153,6 @@ class _objects_detection:
     """two masks of a frame with at least this IoU are the same object (a number from 0.1 to 1; default 0.6)"""
     epsilon_px: float
     """tolerance for simplifying the hull or contour, px (a number from 0 to 100; default 3)"""
-    fragment_inside: float
-    """a mask may be a fragment of another mask if at least this share of it lies inside (a number from 0 to 1; default 0.85)"""
     max_area_share: float
     """masks whose hull covers a larger share of the image are rejected (a number from 0 to 1; default 0.5)"""
     max_depth_offset: float
@@ -207,8 +181,6 @@ class _objects_detection:
 class _objects_fusion:
     min_overlap: float
     """two objects that were never seen together are fused if the IoU of their volumes is at least this (a number from 0 to 1; default 0.25)"""
-    min_overlap_together: float
-    """two objects that few keyframes see together are fused if the IoU of their volumes is at least this (a number from 0 to 1; default 0.5)"""
 
 class _objects_pose:
     loss: Literal["none", "huber", "cauchy", "tukey"]
@@ -257,14 +229,10 @@ class _objects_start:
     """least angle between views that an object without depth needs to be mapped, degrees (a number from 0 to 180; default 15)"""
     min_views: int
     """number of keyframes that must observe an object before it is mapped (an integer from 1 to 1000; default 3)"""
-    trimmed: float
-    """share of the depth points that is left out at each end of each axis of the start of a quadric (a number from 0 to 0.4; default 0.03)"""
 
 class _objects_validity:
     max_elongation: float
     """a mapped object that is longer along the view than across it by a larger factor needs more parallax (a number from 1 to 1000; default 1.5)"""
-    max_half_axis: float
-    """largest half axis of a mapped object as a share of its distance (a number from 0 to 1000; default 3)"""
     max_misfit: float
     """largest RMS distance of the outlines of a mapped object from its projected ellipses, as a share of the size of its masks (a number from 0 to 100; default 0.25)"""
     max_stretch: float
@@ -355,8 +323,6 @@ class _tracking:
     """classes of dynamic objects, separated by commas; they are not mapped, and keypoints on their masks are removed (text; default person)"""
     keyframe_interval: float
     """least time between keyframes, unless tracking weakens abruptly, s; in the rule orb_slam2 the time in which the mapper is busy with a keyframe (a number from 0 to 60; default 0.2)"""
-    keyframe_ratio: float
-    """a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks (rule hullslam only) (a number from 0.1 to 1; default 0.95)"""
     keyframe_rule: Literal["hullslam", "orb_slam2"]
     """when a frame becomes a keyframe: evenly in time, or by the rule of ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
     keyframes_for_objects: bool

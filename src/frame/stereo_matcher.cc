@@ -14,11 +14,12 @@ namespace hullslam {
 namespace {
 
 // The constants are those of ORB-SLAM2.
-constexpr int kMostDifferentBits = 75;      // descriptors that differ in more bits do not match
-constexpr float kRowReach = 2.0F;  // rows at the level of the right keypoint
-constexpr int kHalfPatch = 5;      // px at the level of the left keypoint; the patch has 11 x 11
-constexpr int kReach = 5;          // px; columns to each side in which the patch is shifted
-constexpr double kOutlier = 2.1;   // times the median: 1.5 sigma, with 1.4 medians per sigma
+constexpr int kMostDifferentBits = 75;  // descriptors that differ in more bits do not match
+constexpr float kRowReach = 2.0F;       // rows at the level of the right keypoint
+constexpr int kHalfPatch = 5;         // px at the level of the left keypoint; the patch has 11 x 11
+constexpr int kReach = 5;             // px; columns to each side in which the patch is shifted
+constexpr double kOutlier = 2.1;      // times the median: 1.5 sigma, with 1.4 medians per sigma
+constexpr double kLeastMedian = 1.0;  // grey levels; images without noise differ by roundings
 constexpr int kSide = 2 * kHalfPatch + 1;
 
 using Patch = std::array<float, size_t{kSide} * kSide>;
@@ -170,7 +171,8 @@ std::vector<float> StereoMatcher::Match(const StereoImage& left, const StereoIma
       }
     }
   });
-  const double bound = kOutlier * static_cast<double>(MedianDifference(differences));
+  const double bound =
+      kOutlier * std::max(kLeastMedian, static_cast<double>(MedianDifference(differences)));
   for (size_t i = 0; i < count; ++i) {
     if (static_cast<double>(differences[i]) > bound) {
       disparities[i] = 0.0F;

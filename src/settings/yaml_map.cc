@@ -24,14 +24,15 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostFileBytes = 1'000'000;
 
-// The position of a colon that ends a key at the begin of `line` and is followed by the value
-// without a blank; npos if there is none.
+// The position of a colon that ends a key, which is the first word of `line`, and is followed by
+// the value without a blank; npos if there is none.
 size_t ColonWithoutBlank(std::string_view line) {
-  const auto* const end = std::find_if(line.begin(), line.end(), [](unsigned char c) {
+  const size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  const auto* const end = std::find_if(line.begin() + begin, line.end(), [](unsigned char c) {
     return std::isalnum(c) == 0 && c != '.' && c != '_';
   });
   const size_t colon = static_cast<size_t>(end - line.begin());
-  const bool has_value = colon > 0 && colon + 1 < line.size() && line[colon] == ':' &&
+  const bool has_value = colon > begin && colon + 1 < line.size() && line[colon] == ':' &&
                          std::string_view(" \t\r").find(line[colon + 1]) == std::string_view::npos;
   return has_value ? colon : std::string_view::npos;
 }

@@ -67,7 +67,7 @@ TEST_F(YamlMaps, FilesWithoutAMapAreRefused) {
 TEST_F(YamlMaps, TheFormsOfOpenCvAndOrbSlam2AreRead) {
   const YamlMap map = Read(
       "%YAML:1.0\n---\nViewer.PointSize:2\nm: !!opencv-matrix\n   rows: 1\n"
-      "   data: [ 1., 2. ]\nurl: a:b\n");
+      "   data:[ 1., 2. ]\nurl: a:b\n");
   EXPECT_EQ(map.Number("Viewer.PointSize"), 2.0);
   EXPECT_EQ(map.Map("m").Numbers("data", 2, "a b"), (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(map.Text("url"), "a:b");
