@@ -14,8 +14,8 @@ namespace hullslam {
 
 // The first document of a YAML file. The first line `%YAML:1.0`, which OpenCV demands, is accepted
 // and not needed, and a key at the begin of a line may lack the blank after its colon, as in the
-// files of ORB-SLAM2. Throws InputError with file and line for a file that is not YAML, that has a byte 0,
-// or that is larger than 1 MB.
+// files of ORB-SLAM2. Throws InputError with file and line for a file that is not YAML, that has a
+// byte 0, or that is larger than 1 MB.
 YAML::Node ReadYaml(const std::filesystem::path& file);
 
 // FILE:LINE of a node of the file.
