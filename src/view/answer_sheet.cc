@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
+
+#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {
@@ -22,11 +23,10 @@ const cv::Scalar kInk(40, 40, 40);
 const cv::Scalar kOutline(0, 140, 255);  // orange
 
 cv::Mat DrawCutout(const ViewPicture& picture) {
-  const std::vector<uchar> bytes(picture.jpeg.begin(), picture.jpeg.end());
-  cv::Mat image = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  if (image.empty()) {
-    return image;
+  if (picture.jpeg.empty()) {
+    return {};
   }
+  cv::Mat image = DecodeColourImage("a picture of the run", picture.jpeg);
   const double scale = static_cast<double>(kTile) / std::max(image.cols, image.rows);
   cv::resize(image, image, {}, scale, scale, cv::INTER_LINEAR);
   for (const ViewShape& outline : picture.outlines) {

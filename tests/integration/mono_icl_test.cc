@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 20;
-constexpr double kSmall = 0.010;  // m
+constexpr int kMonoIclFrames = 20;
+constexpr double kMonoIclSmall = 0.010;  // m
 
 class MonoIcl : public MonoProgram {
  protected:
@@ -24,14 +24,14 @@ class MonoIcl : public MonoProgram {
 // A mirrored path fits with no rotation and no scale. The large error of the wrong axis shows that
 // the test can notice this.
 TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
-  MadeRoom().WriteIclTum(path_, kFrames, true);
-  const ProgramResult result = ExpectMap({path_}, kFrames);
+  MadeRoom().WriteIclTum(path_, kMonoIclFrames, true);
+  const ProgramResult result = ExpectMap({path_}, kMonoIclFrames);
   ExpectParts(result.output, {"y up, mirrored"});
-  EXPECT_LE(Ate(), kSmall);
-  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames - 1) << "the first frame has no true pose";
-  EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kFrames - 1U);
+  EXPECT_LE(Ate(), kMonoIclSmall);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kMonoIclFrames - 1) << "the first frame has no true pose";
+  EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kMonoIclFrames - 1U);
   const double right = Ate();
-  ExpectMap({path_, "--groundtruth-y", "down"}, kFrames);
+  ExpectMap({path_, "--groundtruth-y", "down"}, kMonoIclFrames);
   EXPECT_GT(Ate(), 2.0 * right);
 }
 

@@ -8,13 +8,12 @@
 #include <exception>
 #include <iterator>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "hullslam/util/check.h"
+#include "sequences/png_codec.h"
 #include "synthetic/hash_noise.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
@@ -28,12 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMinMaskArea = 100;  // px
-
-std::string Png(const cv::Mat& image) {
-  std::vector<uint8_t> bytes;
-  Check(cv::imencode(".png", image, bytes), "an image could not be encoded");
-  return {bytes.begin(), bytes.end()};
-}
 
 std::string MaskText(const Scene& scene, const cv::Mat& instance) {
   std::string text;
@@ -79,7 +72,7 @@ Scene SceneOfRight(const SequencePlan& plan) {
 void WriteRight(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
   WriteNewFile(
       folder / "right" / (plan.layout.Stem(frame) + ".png"),
-      Png(eye.sensor.Colour(RenderBlurred(plan, eye, frame), static_cast<uint32_t>(frame))));
+      EncodePng(eye.sensor.Colour(RenderBlurred(plan, eye, frame), static_cast<uint32_t>(frame))));
 }
 
 void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
@@ -87,8 +80,8 @@ void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::p
   const Sensor& sensor = eye.sensor;
   const std::string stem = plan.layout.Stem(frame);
   const auto number = static_cast<uint32_t>(frame);
-  WriteNewFile(folder / "rgb" / (stem + ".png"), Png(sensor.Colour(rendered, number)));
-  WriteNewFile(folder / "depth" / (stem + ".png"), Png(sensor.Depth(rendered, number)));
+  WriteNewFile(folder / "rgb" / (stem + ".png"), EncodePng(sensor.Colour(rendered, number)));
+  WriteNewFile(folder / "depth" / (stem + ".png"), EncodePng(sensor.Depth(rendered, number)));
   WriteNewFile(folder / plan.layout.TumFolder() / "masks" / (stem + ".txt"),
                MaskText(plan.scene, rendered.instance));
 }
