@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/export.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +23,7 @@
 #include "run/export_input.h"
 #include "run/messages.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
 
 namespace hullslam {
 namespace {
@@ -184,7 +183,7 @@ void AddArguments(CLI::App& app, ExportArguments& arguments) {
 }  // namespace
 
 int RunExport(int argc, char** argv) {
-  CLI::App app("Writes a finished run or a saved map in a format of other programs.", "export");
+  CLI::App app("Writes a finished run or a saved map in a format of other programs.", argv[0]);
   ExportArguments arguments;
   AddArguments(app, arguments);
   AddVersionAndExitCodes(app);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/map_objects.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -35,6 +33,7 @@
 #include "run/progress.h"
 #include "run/report_output.h"
 #include "run/settings_choice.h"
+#include "run/tools/commands.h"
 #include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
 
@@ -305,7 +304,7 @@ std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments
 
 int RunMapObjects(int argc, char** argv) {
   CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
-               kProgram);
+               argv[0]);
   MapObjectsArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/query_objects.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +22,7 @@
 #include "run/messages.h"
 #include "run/object_outputs.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
 #include "scene/answer.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
@@ -236,7 +235,7 @@ void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {
 }  // namespace
 
 int RunQueryObjects(int argc, char** argv) {
-  CLI::App app("Answers questions about the objects of a run or of a saved map.", "query_objects");
+  CLI::App app("Answers questions about the objects of a run or of a saved map.", argv[0]);
   QueryArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
