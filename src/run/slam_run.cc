@@ -331,7 +331,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
-  live.End(map, nlohmann::json::parse(FormatSummary(summary)));
+  live.End(map, SummaryJson(summary));
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
   return FailIfAny({DescribeFailure(arguments, options.run, sequence, result, summary, system),

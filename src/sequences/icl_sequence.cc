@@ -153,6 +153,7 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
     throw InputError(folder.string() + ": no such folder, expected a sequence of ICL-NUIM");
   }
   IclSequence sequence;
+  sequence.images.dataset = "icl";
   sequence.package =
       options.package == IclPackage::kDetect ? DetectPackage(folder, options) : options.package;
   const bool is_povray = sequence.package == IclPackage::kPovray;

@@ -273,6 +273,7 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.provenance.pipeline = "objects";
   summary.provenance.masks_format = masks.format();
   summary.provenance.sequence = arguments.sequence.string();
+  summary.provenance.dataset = inputs.sequence.dataset;
   return summary;
 }
 
