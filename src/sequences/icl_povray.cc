@@ -17,6 +17,7 @@
 #include "files/plausible.h"
 #include "files/read_text.h"
 #include "files/text_rows.h"
+#include "geometry/mirror.h"
 #include "hullslam/util/error.h"
 #include "sequences/icl_groundtruth.h"
 #include "sequences/image_list.h"

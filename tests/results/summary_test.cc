@@ -7,10 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "files/text_rows.h"
-#include "hullslam/util/error.h"
-#include "support/temporary_folder.h"
-
 namespace hullslam {
 namespace {
 

@@ -138,7 +138,7 @@ void RunObjectsCommand(const ObjectsArguments& arguments) {
       arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);
   std::optional<TruthEvaluation> truth;
   if (!arguments.groundtruth.empty()) {
-    truth = EvaluateTruth(arguments, report, alignment);
+    truth = ReadAndEvaluateTruth(arguments, report, alignment);
   }
   if (arguments.json) {
     PrintJson(report, truth);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/object_metrics.h"
 #include "files/atomic_file.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
@@ -20,10 +21,10 @@
 #include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 #include "scene/answer.h"
+#include "scene/make_scene.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
 #include "util/printable.h"
@@ -104,8 +105,8 @@ void CheckArguments(const QueryArguments& arguments) {
 
 Scene SceneOfMap(const fs::path& path) {
   const StoredMap stored = ReadMap(path);
-  return CollectScene(stored.map, CollectObjects(stored.map, stored.settings.camera, path),
-                      std::nullopt);
+  return MakeScene(stored.map, MeasuredObjects(stored.map, stored.settings.camera, path),
+                   std::nullopt);
 }
 
 Scene LoadScene(const fs::path& source) {

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/export_input.h"
+#include "exports/export_input.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "eval/object_metrics.h"
+#include "files/canonical_path.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "map/islands.h"
 #include "results/finished_run.h"
-#include "run/map_session.h"
-#include "run/object_outputs.h"
+#include "scene/make_scene.h"
 #include "sequences/run_sequence.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
@@ -115,7 +116,7 @@ void UseSequence(const ExportSource& source, const FinishedRun& run, bool is_nee
   }
   const bool use_depth = !input.map->sensor.IsMonocular();
   input.sequence = OpenRunSequence(run.sequence, *path, input.map->sensor.camera, use_depth);
-  input.session = SessionName(source.sequence.empty() ? *path : fs::path(run.sequence.path));
+  input.session = CanonicalName(source.sequence.empty() ? *path : fs::path(run.sequence.path));
   input.read.push_back(*path);
   if (const auto masks = run.Find(run.masks)) {
     input.masks = MasksOfRun{*masks, run.masks_format};
@@ -158,7 +159,7 @@ ExportInput ReadMapFile(const ExportSource& source, ExportNeed need) {
   const MapOfRun& loaded = *input.map;
   input.model.trajectory = KeyframeTrajectory(loaded.map);
   input.model.scene =
-      CollectScene(loaded.map, CollectObjects(loaded.map, loaded.sensor.camera, {}), std::nullopt);
+      MakeScene(loaded.map, MeasuredObjects(loaded.map, loaded.sensor.camera, {}), std::nullopt);
   if (need == ExportNeed::kScene) {
     input.notes.emplace_back(
         "a map has no images, so the points have no colours; the output folder of its run gives "

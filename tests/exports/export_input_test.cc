@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/export_input.h"
+#include "exports/export_input.h"
 
 #include <gtest/gtest.h>
 
