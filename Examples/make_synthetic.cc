@@ -193,7 +193,7 @@ int Run(int argc, char** argv) {
   CLI::App app(
       "Renders a synthetic RGB-D sequence with exact ground truth of the camera and the objects, "
       "or a suite of ten sequences.",
-      "make_synthetic");
+      std::filesystem::path(argv[0]).filename());
   AddOptions(app, arguments);
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;

@@ -32,8 +32,8 @@ LEVELS = {
     "settings": 13, "map_files": 13,
     "results": 14,
     "sequences": 15,
-    "masks": 16, "view": 16, "exports": 16,
-    "live": 17,
+    "masks": 16, "view": 16,
+    "exports": 17, "live": 17,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
     "run": 18,
 }

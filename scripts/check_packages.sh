@@ -35,7 +35,7 @@ for file in report.html trajectory.txt run.png; do
   [ -s "$debian/tmp/demo/run/$file" ] || fail "the demo has not written $file"
 done
 
-for file in man/man1/hullslam-rgbd_tum.1 bash-completion/completions/hullslam-rgbd_tum \
+for file in man/man1/hullslam-rgbd_tum.1 man/man1/hullslam.1 bash-completion/completions/hullslam-rgbd_tum \
   doc/hullslam/copyright; do
   [ -s "$debian/usr/share/$file" ] || fail "/usr/share/$file is not in the packages"
 done

@@ -146,6 +146,14 @@ void MeasureObjects(ObjectReport& report) {
   }
 }
 
+ObjectReport MeasuredObjects(const Map& map, const PinholeCamera& camera,
+                             const std::string& sequence) {
+  ObjectReport report = ReportObjects(map, camera);
+  report.sequence = sequence;
+  MeasureObjects(report);
+  return report;
+}
+
 MapFit SummarizeFits(const ObjectReport& report) {
   MapFit summary;
   FitMean mean;

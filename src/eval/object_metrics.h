@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 
 #include "report/object_report.h"
 
@@ -25,6 +26,9 @@ ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView
 
 // Fills in the fit of every object.
 void MeasureObjects(ObjectReport& report);
+// The objects of a map with their fits. `sequence` is ObjectReport::sequence.
+ObjectReport MeasuredObjects(const Map& map, const PinholeCamera& camera,
+                             const std::string& sequence = {});
 
 // Summary of all mapped objects: means of their fits and sums of their counts.
 struct MapFit {

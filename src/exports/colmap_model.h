@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "eval/located_landmarks.h"
 #include "exports/keyframe_images.h"
 #include "exports/pinhole_view.h"
 #include "hullslam/map/map.h"
+#include "map/located_landmarks.h"
 #include "results/output_folder.h"
 #include "results/unit_mesh.h"
 

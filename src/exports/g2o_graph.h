@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "eval/located_landmarks.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
+#include "map/located_landmarks.h"
 
 namespace hullslam {
 

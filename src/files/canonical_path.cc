@@ -18,6 +18,10 @@ fs::path CanonicalPath(const fs::path& path) {
   return canonical.has_filename() ? canonical : canonical.parent_path();
 }
 
+std::string CanonicalName(const std::filesystem::path& path) {
+  return CanonicalPath(path).filename().string();
+}
+
 bool IsSameOrInside(const fs::path& path, const fs::path& outer) {
   const fs::path inside = CanonicalPath(path);
   const fs::path around = CanonicalPath(outer);

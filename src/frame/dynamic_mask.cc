@@ -5,21 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "util/trim.h"
-
 namespace hullslam {
-
-std::set<std::string> SplitNames(std::string_view names) {
-  std::set<std::string> split;
-  while (!names.empty()) {
-    const size_t comma = std::min(names.find(','), names.size());
-    if (const std::string_view name = Trim(names.substr(0, comma)); !name.empty()) {
-      split.emplace(name);
-    }
-    names.remove_prefix(std::min(comma + 1, names.size()));
-  }
-  return split;
-}
 
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size) {

@@ -5,17 +5,12 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "hullslam/features/feature_set.h"
 #include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
-
-// Splits a list of names at its commas and removes the blanks around each name: "person, cat" gives
-// two names.
-std::set<std::string> SplitNames(std::string_view names);
 
 // A mask (CV_8UC1) that is 255 at the pixels of the raw image that show things of these classes,
 // and in a small margin around them. Empty if there are no such things.

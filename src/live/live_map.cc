@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "eval/located_landmarks.h"
 #include "eval/object_metrics.h"
 #include "map/islands.h"
+#include "map/located_landmarks.h"
 #include "util/thin.h"
 #include "view/view_of_map.h"
 

@@ -36,7 +36,7 @@ struct LiveMapChange {
 };
 
 // The part of a map that browsers show: that of the main island (map/islands.h), thinned if it is
-// large. A landmark is shown once its distance is known (eval/located_landmarks.h).
+// large. A landmark is shown once its distance is known (map/located_landmarks.h).
 class LiveMap {
  public:
   static constexpr size_t kLandmarkWidth = 4;  // x, y, z (m, or units of the map), age (s)

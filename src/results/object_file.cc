@@ -7,6 +7,8 @@
 
 #include "results/json_text.h"
 #include "results/object_file_version.h"
+#include "results/ply_file.h"
+#include "results/scene_file.h"
 #include "util/printable.h"
 
 namespace hullslam {
@@ -213,6 +215,14 @@ std::string FormatObjectsCsv(const ObjectReport& report) {
                         Rounded(QualityOf(object), kAngle));
   }
   return text;
+}
+
+std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene) {
+  return {{"objects.json", FormatObjects(report)},
+          {"objects_observations.json", FormatObservations(report)},
+          {"objects.csv", FormatObjectsCsv(report)},
+          {"objects.ply", FormatObjectsPly(report.objects)},
+          {"scene.json", FormatScene(scene)}};
 }
 
 }  // namespace hullslam

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "report/object_report.h"
+#include "results/output_folder.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -27,5 +29,9 @@ ObjectReport ReadObjects(const std::filesystem::path& path);
 // The same with the path of the file of observations. Both may be the same file.
 ObjectReport ReadObjects(const std::filesystem::path& path,
                          const std::filesystem::path& observations);
+
+// objects.json, objects_observations.json, objects.csv, objects.ply and scene.json, so that they
+// can be written together with the other files of a run.
+std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene);
 
 }  // namespace hullslam

@@ -5,9 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "files/json_file.h"
-#include "files/json_node.h"
-#include "hullslam/eval/ate.h"
 #include "results/json_text.h"
 
 namespace hullslam {
@@ -149,6 +146,7 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"masks", OrNull(summary.masks)},
           {"masks_format", OrNull(summary.masks_format)},
           {"sequence", OrNull(summary.sequence)},
+          {"dataset", OrNull(summary.dataset)},
           {"sequence_choices", Json(summary.sequence_choices)},
           {"map", OrNull(summary.map)},
           {"interrupted", summary.interrupted}};
@@ -156,7 +154,7 @@ Json ToJson(const ProvenanceSummary& summary) {
 
 }  // namespace
 
-std::string FormatSummary(const RunSummary& summary) {
+nlohmann::ordered_json SummaryJson(const RunSummary& summary) {
   Json json = {{"trajectory", ToJson(summary.trajectory)},
                {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
                {"timing", ToJson(summary.timing)},
@@ -170,22 +168,13 @@ std::string FormatSummary(const RunSummary& summary) {
   if (summary.islands) {
     json["islands"] = ToJson(*summary.islands);
   }
-  constexpr int kIndent = 2;
-  // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
-  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json;
 }
 
-AlignmentKind ReadAlignment(const std::filesystem::path& path) {
-  const nlohmann::json json = ReadJson(path);
-  const JsonNode alignment = JsonNode(path, json).At("trajectory").At("alignment");
-  const std::string name = alignment.Text();
-  for (const AlignmentKind kind :
-       {AlignmentKind::kNone, AlignmentKind::kSe3, AlignmentKind::kSim3}) {
-    if (name == ToString(kind)) {
-      return kind;
-    }
-  }
-  alignment.Fail("none, se3 or sim3");
+std::string FormatSummary(const RunSummary& summary) {
+  constexpr int kIndent = 2;
+  // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
+  return SummaryJson(summary).dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {

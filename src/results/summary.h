@@ -3,13 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "hullslam/geometry/alignment.h"
 #include "hullslam/util/stage_timer.h"
 #include "report/lost_frames.h"
 #include "report/unsure_frames.h"
@@ -121,6 +120,7 @@ struct ProvenanceSummary {
   std::optional<std::string> masks = std::nullopt;  // the path of --masks
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
+  std::optional<std::string> dataset = std::nullopt;         // ImageSequence::dataset
   std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices
   std::optional<std::string> map = std::nullopt;             // the path of --save-map
   bool interrupted = false;  // a signal ended the run before its end
@@ -138,13 +138,10 @@ struct RunSummary {
   std::vector<std::string> files = {};  // names of the other files of the run
 };
 
-// JSON with the keys in the order of the structs, with a final line feed.
+// JSON with the keys in the order of the structs.
+nlohmann::ordered_json SummaryJson(const RunSummary& summary);
+// The same as text, with a final line feed.
 std::string FormatSummary(const RunSummary& summary);
-
-// Reads `trajectory.alignment` from a `summary.json` with this path. It is kSim3 if the unit of
-// length of the run is not the metre. Throws InputError if the file does not have the format of
-// FormatSummary().
-AlignmentKind ReadAlignment(const std::filesystem::path& path);
 
 // The statistics of each stage.
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times);

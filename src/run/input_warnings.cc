@@ -20,6 +20,7 @@
 #include "hullslam/util/error.h"
 #include "run/messages.h"
 #include "util/median.h"
+#include "util/split_names.h"
 
 namespace hullslam {
 namespace {

@@ -54,10 +54,6 @@ void CheckSavedFile(const char* option, const fs::path& file, const RunArguments
 
 }  // namespace
 
-std::string SessionName(const fs::path& sequence) {
-  return CanonicalPath(sequence).filename().string();
-}
-
 void CheckSavedFiles(const RunArguments& arguments) {
   CheckSavedFile("--save-map", arguments.save_map, arguments);
   CheckSavedFile("--mcap", arguments.mcap, arguments);
@@ -65,7 +61,7 @@ void CheckSavedFiles(const RunArguments& arguments) {
 
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options) {
   SystemStart start;
-  start.session_name = SessionName(arguments.sequence);
+  start.session_name = CanonicalName(arguments.sequence);
   start.localization_only = arguments.localization;
   if (!arguments.load_map.empty()) {
     start.map = ReadMap(arguments.load_map, options, &Interruption());
@@ -110,7 +106,7 @@ std::string SaveIslands(const RunArguments& arguments, const SystemOptions& opti
 
 std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
                                      const Trajectory& trajectory) {
-  const std::string name = SessionName(arguments.sequence);
+  const std::string name = CanonicalName(arguments.sequence);
   if (arguments.load_map.empty()) {
     return {{.title = {}, .poses = trajectory}};
   }

@@ -15,10 +15,6 @@
 
 namespace hullslam {
 
-// The name of the session of a run: that of the folder or file of its sequence, also if the path
-// ends in a slash.
-std::string SessionName(const std::filesystem::path& sequence);
-
 // Throws InputError unless the files of --save-map and --mcap, if they are given, can be written
 // and are neither in the output folder, where the next run would remove them, nor one of the inputs
 // or inside of one. The file of --load-map may be replaced.

@@ -7,12 +7,6 @@
 #include <map>
 
 #include "eval/object_metrics.h"
-#include "results/object_file.h"
-#include "results/ply_file.h"
-#include "results/scene_file.h"
-#include "scene/make_scene.h"
-#include "scene/up_direction.h"
-#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
@@ -54,14 +48,6 @@ std::string Describe(const ChangedObject& changed) {
 
 }  // namespace
 
-ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
-                            const std::filesystem::path& sequence) {
-  ObjectReport report = ReportObjects(map, camera);
-  report.sequence = sequence.string();
-  MeasureObjects(report);
-  return report;
-}
-
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts) {
   const MapFit fit = SummarizeFits(report);
   ObjectsSummary summary;
@@ -80,22 +66,6 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
     summary.changes = CountChanges(*report.changes);
   }
   return summary;
-}
-
-Scene CollectScene(const Map& map, const ObjectReport& report,
-                   const std::optional<Trajectory>& groundtruth) {
-  std::vector<Eigen::Vector3d> landmarks;
-  map.landmarks().ForEach(
-      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
-  return MakeScene(map, report, FindUp(groundtruth, KeyframeTrajectory(map), landmarks));
-}
-
-std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene) {
-  return {{"objects.json", FormatObjects(report)},
-          {"objects_observations.json", FormatObservations(report)},
-          {"objects.csv", FormatObjectsCsv(report)},
-          {"objects.ply", FormatObjectsPly(report.objects)},
-          {"scene.json", FormatScene(scene)}};
 }
 
 std::string FormatFigure(const std::optional<double>& figure, int decimals) {

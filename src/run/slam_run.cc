@@ -3,41 +3,30 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "eval/located_landmarks.h"
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "results/output_folder.h"
-#include "results/ply_file.h"
-#include "results/summary.h"
 #include "run/datasets/given_groundtruth.h"
+#include "run/finish_slam.h"
 #include "run/frame_source.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
-#include "run/mcap_output.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/report_output.h"
-#include "run/run_report.h"
 #include "run/summarize_run.h"
 #include "run/vocabularies.h"
-#include "system/compose_trajectory.h"
-#include "system/make_sensor.h"
 
 namespace hullslam {
 namespace {
@@ -164,51 +153,6 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
   return result;
 }
 
-std::string MapPly(const std::vector<Eigen::Vector3d>& landmarks, const Trajectory& keyframes) {
-  std::vector<Eigen::Vector3d> centers;
-  for (const StampedPose& pose : keyframes) {
-    centers.push_back(pose.world_from_cam.translation);
-  }
-  return FormatMapPly(landmarks, centers);
-}
-
-// The islands that have files of their own.
-std::span<const LeftIsland> KeptIslands(const RunArguments& arguments, const System& system) {
-  return arguments.keep_islands ? std::span(system.left_islands()) : std::span<const LeftIsland>();
-}
-
-// Each island that was not joined has files of its own, named by its number.
-void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, const Sensor& sensor) {
-  for (const LeftIsland& island : islands) {
-    const std::string name = IslandSuffix(island.id);
-    const Trajectory keyframes = KeyframeTrajectory(*island.map);
-    output.Write({"trajectory" + name + ".txt", FormatTrajectory(island.trajectory)});
-    output.Write({"keyframes" + name + ".txt", FormatTrajectory(keyframes)});
-    output.Write(
-        {"map" + name + ".ply", MapPly(LocateLandmarks(*island.map, sensor).positions, keyframes)});
-  }
-}
-
-void WriteOutputs(OutputFolder& output, std::string map_ply,
-                  const std::vector<TrajectoryPart>& poses,
-                  const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const std::vector<FileContent>& object_files, const ImageSequence& sequence,
-                  std::span<const LeftIsland> islands, const Sensor& sensor) {
-  output.Write({"trajectory.txt", FormatTrajectory(poses)});
-  output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
-  output.Write({"map.ply", std::move(map_ply)});
-  WriteIslands(output, islands, sensor);
-  if (sequence.converted_groundtruth) {
-    output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
-  }
-  for (const FileContent& file : object_files) {
-    output.Write(file);
-  }
-  summary.files = output.names();
-  output.Write({"summary.json", FormatSummary(summary)});
-  output.Commit();
-}
-
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
   return {arguments.sequence,
           arguments.masks,
@@ -251,30 +195,6 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
 }
 
-ObjectReport ReportObjects(const RunArguments& arguments, const PinholeCamera& camera,
-                           const Map& map, size_t earlier_sessions, const System& system) {
-  ObjectReport objects = CollectObjects(map, camera, arguments.sequence);
-  if (map.sessions().size() > earlier_sessions && earlier_sessions > 0) {
-    objects.changes = system.object_changes();
-  }
-  return objects;
-}
-
-std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
-  return fmt::format(
-      "the run was interrupted after {} of {} frames; the results so far were written",
-      result.given, sequence.frames.size());
-}
-
-// Why the run failed; empty if it did not.
-std::string DescribeFailure(const RunArguments& arguments, const RunOptions& options,
-                            const ImageSequence& sequence, const RunResult& result,
-                            const RunSummary& summary, const System& system) {
-  return result.was_interrupted
-             ? DescribeInterruption(result, sequence)
-             : DescribeLoss(arguments, options, sequence.frames.size(), summary, system.frames());
-}
-
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -305,37 +225,15 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
     return kFailed;
   }
 
-  RunSummary summary = SummarizeRun(arguments, settings, sequence, result, system, groundtruth);
-  summary.provenance.masks_format = masks.format();
-  const Trajectory trajectory = system.trajectory();
-  const std::shared_ptr<const Map> map =
-      system.map() != nullptr ? system.map() : std::make_shared<const Map>();
-  const ObjectReport objects =
-      ReportObjects(arguments, options.camera, *map, earlier_sessions, system);
-  std::vector<FileContent> object_files;
-  if (masks.format()) {
-    summary.objects = SummarizeObjects(objects, system.object_counts());
-    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth));
-  }
-  const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
-  summary.map.landmarks_at_infinity = landmarks.at_infinity;
-  WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
-               RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
-               summary, object_files, sequence, KeptIslands(arguments, system),
-               MakeSensor(options));
-  const std::string unsaved = SaveMap(arguments, options, *map);
-  const std::string unsaved_island =
-      SaveIslands(arguments, options, KeptIslands(arguments, system));
-  const std::string unrecorded =
-      WriteMcap(arguments, {&options, map.get(), &sequence, result.given, &trajectory, &objects});
-  if (!arguments.quiet) {
-    PrintReport(arguments, summary, objects);
-  }
-  live.End(map, nlohmann::json::parse(FormatSummary(summary)));
-  const std::string unreported =
-      arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
-  return FailIfAny({DescribeFailure(arguments, options.run, sequence, result, summary, system),
-                    unsaved, unsaved_island, unrecorded, unreported});
+  return FinishSlam({.arguments = arguments,
+                     .settings = settings,
+                     .sequence = sequence,
+                     .masks = masks,
+                     .groundtruth = groundtruth,
+                     .system = system,
+                     .result = result,
+                     .earlier_sessions = earlier_sessions},
+                    output, live);
 }
 
 }  // namespace hullslam

@@ -139,6 +139,7 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
   provenance.seed = arguments.seed;
   provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
   provenance.sequence = arguments.sequence.string();
+  provenance.dataset = sequence.dataset;
   provenance.sequence_choices = sequence.choices;
   if (!arguments.masks.empty()) {
     provenance.masks = arguments.masks.string();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "files/atomic_file.h"
+#include "geometry/mirror.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
@@ -24,7 +25,6 @@
 #include "run/load_settings.h"
 #include "run/program.h"
 #include "run/slam_run.h"
-#include "sequences/icl_groundtruth.h"
 #include "settings/yaml_settings.h"
 #include "util/shown_text.h"
 

@@ -12,6 +12,7 @@
 #include "scene/object_body.h"
 #include "scene/relations.h"
 #include "scene/shape_covariance.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
@@ -100,6 +101,14 @@ Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& u
   std::stable_sort(scene.relations.begin(), scene.relations.end(),
                    [](const Relation& a, const Relation& b) { return a.subject < b.subject; });
   return scene;
+}
+
+Scene MakeScene(const Map& map, const ObjectReport& report,
+                const std::optional<Trajectory>& groundtruth) {
+  std::vector<Eigen::Vector3d> landmarks;
+  map.landmarks().ForEach(
+      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+  return MakeScene(map, report, FindUp(groundtruth, KeyframeTrajectory(map), landmarks));
 }
 
 }  // namespace hullslam

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
 #include "report/object_report.h"
 #include "scene/scene.h"
@@ -12,5 +15,10 @@ namespace hullslam {
 // take part. If the upward direction is not known, there are no boxes, no surfaces, and only the
 // relations that follow from the views.
 Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up);
+
+// The same with the upward direction that FindUp() finds: from the ground truth of the sequence if
+// it has one, else from the horizontal planes of the landmarks.
+Scene MakeScene(const Map& map, const ObjectReport& report,
+                const std::optional<Trajectory>& groundtruth);
 
 }  // namespace hullslam

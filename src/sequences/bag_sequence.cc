@@ -321,6 +321,7 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
       ChooseImageTopic(index, BagImageKind::kColour, options.image_topic, kImageOption);
   TopicImages colour = OrderImages(path, images, options.use_recording_times, sequence);
   sequence.notes.push_back(DescribeTopic("images", colour));
+  sequence.images.dataset = "bag";
   sequence.images.choices["image_topic"] = images.name;
   if (options.use_recording_times) {
     sequence.images.choices["times"] = "recording";

@@ -168,6 +168,7 @@ EurocCamera ReadEurocCamera(const fs::path& path) {
 EurocSequence OpenEurocSequence(const fs::path& folder, const FrameSelection& selection) {
   const fs::path root = FindRoot(folder);
   EurocSequence sequence;
+  sequence.images.dataset = "euroc";
   sequence.camera = ReadEurocCamera(root / "cam0" / "sensor.yaml");
   sequence.images.frames = ReadImages(root / "cam0", sequence.images.warnings);
   SelectFrames(folder, selection, sequence.images);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "files/text_rows.h"
+#include "geometry/mirror.h"
 #include "hullslam/util/error.h"
 #include "sequences/icl_groundtruth.h"
 #include "sequences/image_list.h"
@@ -155,6 +156,7 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
     throw InputError(folder.string() + ": no such folder, expected a sequence of ICL-NUIM");
   }
   IclSequence sequence;
+  sequence.images.dataset = "icl";
   sequence.images.frames = ReadPairs(folder, options.associations, sequence.images.warnings);
   SelectFrames(folder, options.selection, sequence.images);
   if (!options.groundtruth.empty()) {

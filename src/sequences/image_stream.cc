@@ -148,6 +148,7 @@ ImageStream OpenImageStream(const fs::path& path, const ImageStreamOptions& opti
   }
   ImageStream stream =
       fs::is_directory(path, error) ? OpenFolder(path, options) : OpenVideo(path, options);
+  stream.images.dataset = "video";
   for (FramePaths& frame : stream.images.frames) {
     frame.timestamp += options.stamp_offset;
   }

@@ -1,96 +1,103 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sequences/run_sequence.h"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <system_error>
+#include <string>
 
 #include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/sequences/vslamlab_sequence.h"
+#include "hullslam/util/error.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
+namespace {
 
 namespace fs = std::filesystem;
 
-namespace {
+// What a sequence of any kind is opened with.
+struct Reopening {
+  const SequenceOfRun& run;
+  const fs::path& path;
+  const PinholeCamera& camera;
+  bool use_depth;
 
-BagSequenceOptions BagOptions(const std::map<std::string, std::string>& choices, bool use_depth) {
-  const auto choice = [&](const char* name) {
-    const auto found = choices.find(name);
-    return found != choices.end() ? found->second : std::string();
-  };
-  const std::string units = choice("float_units");
-  return {.image_topic = choice("image_topic"),
-          .depth_topic = choice("depth_topic"),
-          .use_depth = use_depth,
-          .need_camera = false,
-          .use_recording_times = choice("times") == "recording",
-          .float_units = units.empty() ? 1.0 : std::strtod(units.c_str(), nullptr)};
+  // A choice of the run; empty if it made none.
+  std::string Choice(const char* name) const {
+    const auto found = run.choices.find(name);
+    return found != run.choices.end() ? found->second : std::string();
+  }
+};
+
+ImageSequence OpenTum(const Reopening& opening) {
+  return OpenTumSequence(opening.path, {.use_depth = opening.use_depth});
 }
+
+ImageSequence OpenIcl(const Reopening& opening) {
+  return OpenIclSequence(opening.path, opening.camera, {}, {.use_depth = opening.use_depth}).images;
+}
+
+ImageSequence OpenEuroc(const Reopening& opening) { return OpenEurocSequence(opening.path).images; }
+
+ImageSequence OpenBag(const Reopening& opening) {
+  const std::string units = opening.Choice("float_units");
+  return OpenBagSequence(opening.path,
+                         {.image_topic = opening.Choice("image_topic"),
+                          .depth_topic = opening.Choice("depth_topic"),
+                          .use_depth = opening.use_depth,
+                          .need_camera = false,
+                          .use_recording_times = opening.Choice("times") == "recording",
+                          .float_units = units.empty() ? 1.0 : std::strtod(units.c_str(), nullptr)})
+      .images;
+}
+
+ImageSequence OpenVideo(const Reopening& opening) { return OpenImageStream(opening.path).images; }
+
+ImageSequence OpenVslamlab(const Reopening& opening) {
+  return OpenVslamlabSequence(opening.path, opening.path / opening.Choice("rgb_csv"),
+                              opening.Choice("image_name"),
+                              opening.use_depth ? opening.Choice("depth_name") : "")
+      .images;
+}
+
+struct NamedDataset {
+  const char* name;  // ImageSequence::dataset
+  ImageSequence (*open)(const Reopening& opening);
+};
+
+constexpr std::array<NamedDataset, 6> kDatasets = {{{"tum", OpenTum},
+                                                    {"icl", OpenIcl},
+                                                    {"euroc", OpenEuroc},
+                                                    {"bag", OpenBag},
+                                                    {"video", OpenVideo},
+                                                    {"vslamlab", OpenVslamlab}}};
 
 }  // namespace
 
-std::optional<fs::path> FindRunInput(const std::string& input, const fs::path& run_folder) {
-  std::error_code error;
-  if (input.empty()) {
-    return std::nullopt;
-  }
-  if (fs::exists(input, error)) {
-    return fs::path(input);
-  }
-  const fs::path absolute = fs::absolute(run_folder, error);
-  for (fs::path folder = absolute; !folder.empty(); folder = folder.parent_path()) {
-    if (fs::exists(folder / input, error)) {
-      return folder / input;
-    }
-    if (folder == folder.root_path()) {
-      break;
-    }
-  }
-  return std::nullopt;
-}
-
-RunOpening ReadRunOpening(const nlohmann::json& summary) {
-  RunOpening run;
-  const nlohmann::json provenance =
-      summary.is_object() ? summary.value("provenance", nlohmann::json()) : nlohmann::json();
-  if (!provenance.is_object()) {
-    return run;
-  }
-  if (const auto program = provenance.find("program");
-      program != provenance.end() && program->is_string()) {
-    run.program = *program;
-  }
-  const nlohmann::json choices = provenance.value("sequence_choices", nlohmann::json());
-  if (choices.is_object()) {
-    for (const auto& [name, choice] : choices.items()) {
-      if (choice.is_string()) {
-        run.choices[name] = choice;
-      }
-    }
-  }
-  return run;
-}
-
-ImageSequence OpenRunSequence(const RunOpening& run, const fs::path& sequence,
+ImageSequence OpenRunSequence(const SequenceOfRun& run, const fs::path& path,
                               const PinholeCamera& camera, bool use_depth) {
-  const std::string& program = run.program;
-  if (program.ends_with("_euroc")) {
-    return OpenEurocSequence(sequence).images;
+  std::string known;
+  for (const NamedDataset& dataset : kDatasets) {
+    if (run.dataset == dataset.name) {
+      return dataset.open({run, path, camera, use_depth});
+    }
+    known += (known.empty() ? "" : ", ") + std::string(dataset.name);
   }
-  if (program.ends_with("_icl")) {
-    return OpenIclSequence(sequence, camera, {}, {.use_depth = use_depth}).images;
-  }
-  if (program.ends_with("_bag")) {
-    return OpenBagSequence(sequence, BagOptions(run.choices, use_depth)).images;
-  }
-  if (program.ends_with("_video")) {
-    return OpenImageStream(sequence).images;
-  }
-  return OpenTumSequence(sequence, {.use_depth = use_depth});
+  throw InputError(
+      run.dataset.empty()
+          ? fmt::format(
+                "{}: cannot be opened, because the run does not say of which data set it is "
+                "(provenance.dataset in summary.json); repeat the run with this version",
+                path.string())
+          : fmt::format("{}: cannot be opened, because provenance.dataset in summary.json is '{}', "
+                        "expected one of: {}",
+                        path.string(), ShowText(run.dataset), known));
 }
 
 }  // namespace hullslam

@@ -244,6 +244,7 @@ void CheckTumFolder(const fs::path& folder) {
 ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& options) {
   CheckFolder(folder);
   ImageSequence sequence = ReadLists(folder, options);
+  sequence.dataset = "tum";
   SelectFrames(folder, options.selection, sequence);
   if (options.need_images) {
     LeaveOutMissing(sequence);

@@ -136,6 +136,14 @@ class CsvReader {
   const fs::path& csv_;
 };
 
+// The path of the list as it is written down, so that the sequence can be moved with its list.
+std::string RelativeIfInside(const fs::path& csv, const fs::path& folder) {
+  std::error_code error;
+  const fs::path relative = fs::relative(csv, folder, error);
+  const bool is_inside = !error && !relative.empty() && *relative.begin() != "..";
+  return is_inside ? relative : fs::absolute(csv, error);
+}
+
 }  // namespace
 
 VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name) {
@@ -151,6 +159,10 @@ VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& cs
   const std::string text = ReadText(csv);
   const CsvReader reader(folder, csv);
   VslamlabSequence sequence;
+  sequence.images.dataset = "vslamlab";
+  sequence.images.choices = {{"rgb_csv", RelativeIfInside(csv, folder)},
+                             {"image_name", image_name},
+                             {"depth_name", depth_name}};
   ListedFrames list;
   ImageColumns image;
   ImageColumns depth;

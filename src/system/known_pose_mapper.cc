@@ -12,6 +12,7 @@
 #include "objects/object_mapper.h"
 #include "system/count_objects.h"
 #include "system/make_sensor.h"
+#include "util/split_names.h"
 
 namespace hullslam {
 struct KnownPoseMapper::State {

@@ -23,6 +23,7 @@
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
 #include "tracking/remembered_frame.h"
+#include "util/split_names.h"
 #include "util/task_runner.h"
 
 namespace hullslam {

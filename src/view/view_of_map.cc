@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "eval/located_landmarks.h"
 #include "eval/object_metrics.h"
+#include "map/located_landmarks.h"
 #include "objects/object_view.h"
 #include "objects/validity.h"
 

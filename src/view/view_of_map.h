@@ -13,7 +13,7 @@ namespace hullslam {
 
 // Fills in what the map has and the files of a run do not have: landmarks with the times of their
 // creation, keyframes with their ids, edges, and the reasons why the candidates among the objects
-// of `model` are not mapped. Landmarks at infinity are left out (eval/located_landmarks.h).
+// of `model` are not mapped. Landmarks at infinity are left out (map/located_landmarks.h).
 void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, ViewModel& model);
 
 // The model of a map without a run. Its trajectory has the poses of the keyframes.

@@ -11,13 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "files/json_file.h"
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
-#include "results/object_file.h"
-#include "results/ply_points.h"
-#include "results/scene_file.h"
-#include "results/summary.h"
+#include "results/finished_run.h"
 #include "sequences/run_sequence.h"
 #include "view/aligned_truth.h"
 #include "view/run_pictures.h"
@@ -40,38 +35,22 @@ void AddPart(const char* part, ViewModel& model, const std::function<void()>& ad
   }
 }
 
-// A text of summary.json; empty if it is absent or no text.
-std::string TextAt(const Json& summary, const char* group, const char* key) {
-  if (!summary.contains(group) || !summary[group].is_object()) {
-    return {};
-  }
-  const Json& node = summary[group];
-  return node.contains(key) && node[key].is_string() ? node[key].get<std::string>() : std::string();
-}
-
-void ReadHead(const fs::path& folder, ViewModel& model) {
-  const fs::path file = folder / "summary.json";
-  model.summary = ReadJson(file);
-  if (!model.summary.is_object() || !model.summary.contains("trajectory") ||
-      !model.summary.contains("provenance")) {
-    throw InputError(file.string() +
-                     ": expected the summary of a run, with trajectory and provenance");
-  }
-  model.program = TextAt(model.summary, "provenance", "program");
-  model.sequence = TextAt(model.summary, "provenance", "sequence");
-  model.version = TextAt(model.summary, "provenance", "version");
+void AddHead(const FinishedRun& run, ViewModel& model) {
+  model.summary = *run.summary;
+  model.program = run.program;
+  model.sequence = run.sequence.path;
+  model.version = run.version;
   const fs::path sequence = fs::path(model.sequence).lexically_normal();
   model.title = sequence.has_filename() ? sequence.filename() : sequence.parent_path().filename();
   if (model.title.empty()) {
-    model.title = fs::absolute(folder).lexically_normal().filename();
+    model.title = fs::absolute(run.folder).lexically_normal().filename();
   }
 }
 
-void ReadPoses(const fs::path& folder, ViewModel& model) {
-  AddPart("trajectory", model,
-          [&] { model.trajectory = ReadTrajectory(folder / "trajectory.txt"); });
+void AddPoses(const FinishedRun& run, ViewModel& model) {
+  AddPart("trajectory", model, [&] { model.trajectory = run.ReadPoses(); });
   AddPart("keyframes", model, [&] {
-    model.keyframes.poses = ReadKeyframes(folder / "keyframes.txt");
+    model.keyframes.poses = run.ReadKeyframePoses();
     for (uint32_t id = 0; id < model.keyframes.poses.size(); ++id) {
       model.keyframes.ids.push_back(id);
     }
@@ -79,12 +58,9 @@ void ReadPoses(const fs::path& folder, ViewModel& model) {
 }
 
 // Without the map, all landmarks have the colour of the file, which says nothing.
-void ReadLandmarks(const fs::path& folder, ViewModel& model) {
-  if (!fs::exists(folder / "map.ply")) {
-    return;
-  }
+void AddLandmarks(const FinishedRun& run, ViewModel& model) {
   AddPart("landmarks", model, [&] {
-    PlyPoints points = ReadMapLandmarks(folder / "map.ply");
+    PlyPoints points = run.ReadLandmarkPoints().value_or(PlyPoints());
     model.landmarks.total = points.positions.size();
     model.landmarks.positions = std::move(points.positions);
     if (points.left_out > 0) {
@@ -94,35 +70,30 @@ void ReadLandmarks(const fs::path& folder, ViewModel& model) {
   });
 }
 
-void ReadObjectFiles(const fs::path& folder, ViewModel& model) {
-  if (!fs::exists(folder / "objects.json")) {
-    return;
-  }
+void AddObjects(const FinishedRun& run, ViewModel& model) {
   AddPart("objects", model, [&] {
-    ObjectReport report = ReadObjects(folder / "objects.json");
-    model.camera = report.camera;
-    for (ReportedObject& object : report.objects) {
+    std::optional<ObjectReport> report = run.ReadObjectReport();
+    if (!report) {
+      return;
+    }
+    model.camera = report->camera;
+    for (ReportedObject& object : report->objects) {
       model.objects.push_back({std::move(object), {}, {}});
     }
   });
 }
 
-void AddScene(const fs::path& folder, ViewModel& model) {
-  if (!fs::exists(folder / "scene.json")) {
-    return;
-  }
+void AddScene(const FinishedRun& run, ViewModel& model) {
   AddPart("relations", model, [&] {
-    Scene scene = ReadScene(folder / "scene.json");
+    Scene scene = run.ReadSceneGraph().value_or(Scene());
     model.up = scene.up ? scene.up : model.up;
     model.relations = std::move(scene.relations);
   });
 }
 
-std::optional<Trajectory> FindGroundtruth(const fs::path& folder, const ImageSequence* sequence) {
-  if (fs::exists(folder / "groundtruth.txt")) {
-    return ReadTrajectory(folder / "groundtruth.txt");
-  }
-  return sequence != nullptr ? ReadGroundtruth(*sequence) : std::nullopt;
+std::optional<Trajectory> FindGroundtruth(const FinishedRun& run, const ImageSequence* sequence) {
+  std::optional<Trajectory> converted = run.ReadConvertedGroundtruth();
+  return converted || sequence == nullptr ? converted : ReadGroundtruth(*sequence);
 }
 
 // The part of the ground truth during the run, with a margin of half a second.
@@ -137,14 +108,9 @@ Trajectory DuringRun(const Trajectory& groundtruth, const Trajectory& run) {
   return part;
 }
 
-void CompareWithTruth(const fs::path& folder, const std::optional<Trajectory>& groundtruth,
+void CompareWithTruth(const std::optional<Trajectory>& groundtruth, AlignmentKind alignment,
                       ViewModel& model) {
-  if (model.trajectory.empty()) {
-    return;
-  }
-  const AlignmentKind alignment = ReadAlignment(folder / "summary.json");
-  model.is_metric = alignment != AlignmentKind::kSim3;
-  if (!groundtruth) {
+  if (model.trajectory.empty() || !groundtruth) {
     return;
   }
   const std::string failure =
@@ -181,17 +147,16 @@ void AddPictures(const ImageSequence& sequence, const RunMemory& memory, ViewMod
 }
 
 // The sequence of the run, if it is still there.
-std::optional<ImageSequence> ReopenSequence(const fs::path& folder, ViewModel& model) {
+std::optional<ImageSequence> ReopenSequence(const FinishedRun& run, ViewModel& model) {
   std::optional<ImageSequence> sequence;
-  const std::optional<fs::path> path = FindRunInput(model.sequence, folder);
+  const std::optional<fs::path> path = run.Find(run.sequence.path);
   if (!path) {
     model.notes.push_back(fmt::format(
         "images and ground truth left out: the sequence \"{}\" is not found", model.sequence));
     return sequence;
   }
   AddPart("images", model, [&] {
-    sequence = OpenRunSequence(ReadRunOpening(model.summary), *path,
-                               model.camera.value_or(PinholeCamera{}));
+    sequence = OpenRunSequence(run.sequence, *path, model.camera.value_or(PinholeCamera{}));
   });
   return sequence;
 }
@@ -217,29 +182,31 @@ void AddPresetOverrides(ViewModel& model) {
 }  // namespace
 
 ViewModel ViewOfRun(const fs::path& folder, const RunMemory& memory) {
+  const FinishedRun run = OpenFinishedRun(folder);
   ViewModel model;
-  ReadHead(folder, model);
-  ReadPoses(folder, model);
-  ReadObjectFiles(folder, model);
+  AddHead(run, model);
+  AddPoses(run, model);
+  AddObjects(run, model);
   if (memory.map != nullptr) {
     model.camera = memory.sensor->camera;
     AddMap(*memory.map, *memory.sensor, *memory.options, model);
   } else {
-    ReadLandmarks(folder, model);
+    AddLandmarks(run, model);
   }
   std::optional<ImageSequence> reopened;
   const ImageSequence* sequence = memory.sequence;
   if (sequence == nullptr) {
-    reopened = ReopenSequence(folder, model);
+    reopened = ReopenSequence(run, model);
     sequence = reopened ? &*reopened : nullptr;
   }
   std::optional<Trajectory> groundtruth;
   AddPart("ground truth", model, [&] {
-    groundtruth = FindGroundtruth(folder, sequence);
-    CompareWithTruth(folder, groundtruth, model);
+    model.is_metric = model.trajectory.empty() || run.IsMetric();
+    groundtruth = FindGroundtruth(run, sequence);
+    CompareWithTruth(groundtruth, run.alignment, model);
   });
   AddUp(groundtruth, model);
-  AddScene(folder, model);
+  AddScene(run, model);
   if (sequence != nullptr && model.camera) {
     AddPictures(*sequence, memory, model);
   }

@@ -10,14 +10,6 @@
 namespace hullslam {
 namespace {
 
-TEST(SplitNames, TakesBlanksOffAndLeavesEmptyOnesOut) {
-  EXPECT_EQ(SplitNames("person"), std::set<std::string>{"person"});
-  EXPECT_EQ(SplitNames(" person , potted plant,,"),
-            (std::set<std::string>{"person", "potted plant"}));
-  EXPECT_TRUE(SplitNames("").empty());
-  EXPECT_TRUE(SplitNames(" ").empty());
-}
-
 TEST(DynamicMask, CoversThingsOfTheClassesAndALittleMore) {
   const std::vector<InstanceMask> masks = {Square("person", 40, 40, 20), Square("cup", 5, 5, 10)};
   const cv::Mat mask = DynamicMask(masks, {"person"}, {100, 100});

@@ -29,11 +29,11 @@
 #include "map_files/map_records.h"
 #include "map_files/vocabulary_text.h"
 #include "masks/mask_classes.h"
+#include "results/finished_run.h"
 #include "results/object_file.h"
 #include "results/ply_points.h"
 #include "results/pose_file.h"
 #include "results/scene_file.h"
-#include "results/summary.h"
 #include "results/true_object_file.h"
 #include "sequences/image_file.h"
 
@@ -114,10 +114,11 @@ void FuzzPlyPoints(std::string_view bytes) {
 }
 
 void FuzzSummary(std::string_view bytes) {
-  TryFile(bytes, [](const fs::path& path) {
-    RunSummary summary;
-    summary.trajectory.alignment = ToString(ReadAlignment(path));
-    Expect(!FormatSummary(summary).empty(), "no summary");
+  static const InputFolder folder("summary.json");
+  folder.Write(bytes);
+  Try([&] {
+    const FinishedRun run = OpenFinishedRun(folder.path());
+    Expect(run.summary != nullptr && run.summary->is_object(), "no summary");
   });
 }
 

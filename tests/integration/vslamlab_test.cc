@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "files/read_file.h"
+#include "geometry/mirror.h"
 #include "hullslam/results/trajectory_file.h"
-#include "sequences/icl_groundtruth.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

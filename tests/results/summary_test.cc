@@ -7,10 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "files/text_rows.h"
-#include "hullslam/util/error.h"
-#include "support/temporary_folder.h"
-
 namespace hullslam {
 namespace {
 
@@ -111,7 +107,7 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
       Keys(json["provenance"]),
       (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
                                 "preset_overrides", "seed", "pipeline", "masks", "masks_format",
-                                "sequence", "sequence_choices", "map", "interrupted"}));
+                                "sequence", "dataset", "sequence_choices", "map", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {
@@ -178,41 +174,6 @@ TEST(Summary, ValuesAreWritten) {
   EXPECT_EQ(json["map"]["landmarks_at_infinity"], 12);
   EXPECT_EQ(json["provenance"]["seed"], 18446744073709551615U);
   EXPECT_TRUE(json["provenance"]["sequence"].get<std::string>().starts_with("fr1 \"xyz\" "));
-}
-
-TEST(Summary, TheAlignmentIsReadAgain) {
-  const TemporaryFolder folder;
-  for (const auto& [name, kind] :
-       std::map<std::string, AlignmentKind>{{"none", AlignmentKind::kNone},
-                                            {"se3", AlignmentKind::kSe3},
-                                            {"sim3", AlignmentKind::kSim3}}) {
-    RunSummary summary;
-    summary.trajectory.alignment = name;
-    EXPECT_EQ(ReadAlignment(folder.Write("summary.json", FormatSummary(summary))), kind);
-  }
-}
-
-TEST(Summary, ABrokenFileIsRefusedWithItsNameAndTheKey) {
-  const TemporaryFolder folder;
-  const auto expect = [&](const std::string& text, const std::string& part) {
-    const std::string path = folder.Write("summary.json", text);
-    try {
-      ReadAlignment(path);
-      ADD_FAILURE() << text << " was read";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_TRUE(message.starts_with(path)) << message;
-      EXPECT_NE(message.find(part), std::string::npos) << message;
-    }
-  };
-  expect("", "JSON");
-  expect("[]", "expected");
-  expect("{}", "\"trajectory\" is missing");
-  expect(R"({"trajectory": 3})", "trajectory is 3");
-  expect(R"({"trajectory": {"alignment": null}})", "trajectory.alignment is null");
-  expect(R"({"trajectory": {"alignment": "affine"}})",
-         "trajectory.alignment is \"affine\", expected none, se3 or sim3");
-  EXPECT_THROW(ReadAlignment(folder.path() / "none.json"), InputError);
 }
 
 TEST(Summary, PeakMemoryCountsTouchedPages) {

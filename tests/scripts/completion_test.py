@@ -9,12 +9,19 @@ import tempfile
 import unittest
 
 COMPLETION = pathlib.Path(__file__).resolve().parents[2] / "packaging" / "completion.bash"
+# As the help of the programs: a line on usage, and headings above options and commands.
 PROGRAM = r"""#!/bin/bash
-if [ "$1" = objects ]; then
-  printf 'Options:\n  --groundtruth FILE  the true objects\n'
-else
-  printf 'Options:\n  --json  as JSON\n\nSubcommands:\n  objects  of a run\n  trajectory  of a run\n\nEnd.\n'
-fi
+case "$*" in
+  "evaluate objects --help" | "objects --help")
+    printf 'Usage: objects [OPTIONS] RUN\n\nOptions:\n  --groundtruth FILE  the true objects\n\nFormats:\n  ply  points\n' ;;
+  "evaluate --help")
+    printf 'Usage: evaluate [OPTIONS] SUBCOMMAND\n\nOptions:\n  --json  as JSON\n\n'
+    printf 'Subcommands:\n  objects  of a run\n  trajectory  of a run\n\nEnd.\n' ;;
+  "--help")
+    printf 'Usage: hullslam [OPTIONS] COMMAND\n\nOptions:\n  --version  the version\n\n'
+    printf 'Prepare it:\n  check-masks  checks masks\n\nMeasure it:\n  evaluate  errors\n\nEnd.\n' ;;
+  *) exit 2 ;;
+esac
 """
 
 
@@ -23,7 +30,7 @@ class CompletionTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.dir = pathlib.Path(folder.name)
-        program = self.dir / "hullslam-evaluate"
+        program = self.dir / "hullslam"
         program.write_text(PROGRAM)
         program.chmod(0o755)
         (self.dir / "completions").mkdir()
@@ -31,20 +38,29 @@ class CompletionTest(unittest.TestCase):
 
     def complete(self, *words):
         """What bash offers for the last word."""
-        quoted = " ".join(f"'{word}'" for word in ("hullslam-evaluate", *words))
-        script = (f"PATH={self.dir}:$PATH; . {self.dir}/completions/hullslam-evaluate; compopt() {{ :; }}; "
+        quoted = " ".join(f"'{word}'" for word in ("hullslam", *words))
+        script = (f"PATH={self.dir}:$PATH; . {self.dir}/completions/hullslam; compopt() {{ :; }}; "
                   f"COMP_WORDS=({quoted}); COMP_CWORD={len(words)}; cd {self.dir}; "
-                  f"_hullslam hullslam-evaluate '{words[-1]}'; printf '%s\\n' \"${{COMPREPLY[@]}}\"; "
-                  "complete -p hullslam-evaluate >&2")
+                  f"_hullslam hullslam '{words[-1]}'; printf '%s\\n' \"${{COMPREPLY[@]}}\"; "
+                  "complete -p hullslam >&2")
         result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout.split()
 
-    def test_options_subcommands_and_files(self):
-        self.assertEqual(self.complete("--"), ["--json"])
-        self.assertEqual(self.complete("tr"), ["trajectory"])
-        self.assertEqual(self.complete("objects", "--g"), ["--groundtruth"])
-        self.assertEqual(self.complete("objects", "comp"), ["completions"])
+    def test_commands(self):
+        self.assertEqual(self.complete(""), ["check-masks", "evaluate"])
+        self.assertEqual(self.complete("ch"), ["check-masks"])
+        self.assertEqual(self.complete("evaluate", "tr"), ["trajectory"])
+
+    def test_options(self):
+        self.assertEqual(self.complete("--"), ["--version"])
+        self.assertEqual(self.complete("evaluate", "--"), ["--json"])
+        self.assertEqual(self.complete("evaluate", "objects", "--g"), ["--groundtruth"])
+
+    def test_files_are_offered_where_no_command_is_expected(self):
+        self.assertEqual(self.complete("evaluate", "objects", "comp"), ["completions"])
+        self.assertEqual(self.complete("evaluate", "objects", "pl"), [], "a format is no command")
+        self.assertEqual(self.complete("evaluate", "unknown", "comp"), ["completions"])
 
 
 if __name__ == "__main__":

@@ -134,8 +134,7 @@ TEST_F(ViewOfRunTest, AFolderWithoutASummaryIsNoRun) {
   folder_.Write("summary.json", "{\"trajectory\": ");
   ExpectInputError([&] { ViewOfRun(folder_.path()); }, {"summary.json"});
   folder_.Write("summary.json", "[1, 2]");
-  ExpectInputError([&] { ViewOfRun(folder_.path()); },
-                   {"summary.json", "expected the summary of a run"});
+  ExpectInputError([&] { ViewOfRun(folder_.path()); }, {"summary.json", "expected an object"});
 }
 
 TEST_F(ViewOfRunTest, ARunWithoutMapHasTheOtherParts) {

@@ -55,8 +55,10 @@ struct ImageSequence {
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
-  // What was chosen among several possibilities, such as "image_topic". OpenRunSequence() needs it
-  // to open the same images again.
+  // The kind of data set: "tum", "icl", "euroc", "bag", "video" or "vslamlab"; and what was chosen
+  // among several possibilities, such as "image_topic". OpenRunSequence() needs both to open the
+  // same images again.
+  std::string dataset = {};
   std::map<std::string, std::string> choices = {};
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;

@@ -17,7 +17,7 @@ struct VslamlabCamera {
   std::string depth_name;     // the name of its depth images; empty: it has none
   double depth_factor = 0.0;  // units of the depth images per metre; 0: not given
   // The file has a negative fy (ICL-NUIM): `calibration` has the positive one, and the poses of a
-  // ground truth are mirrored (MirrorY() in sequences/icl_groundtruth.h).
+  // ground truth are mirrored (MirrorY() in geometry/mirror.h).
   bool is_mirrored = false;
 };
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/check_masks.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +27,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/settings_choice.h"
+#include "run/tools/commands.h"
 #include "run/tools/mask_overlay.h"
 #include "sequences/image_file.h"
 
@@ -250,7 +249,7 @@ void FinishOutput(OutputFolder& output) {
 int RunCheckMasks(int argc, char** argv) {
   CLI::App app(
       "Checks the masks of a sequence, counts the detections that they give, and can draw them.",
-      "check_masks");
+      argv[0]);
   CheckMasksArguments arguments;
   AddOptions(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

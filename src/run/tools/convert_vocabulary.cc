@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/convert_vocabulary.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
@@ -8,6 +6,7 @@
 #include "run/command_line.h"
 #include "run/messages.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
 #include "run/vocabularies.h"
 
 namespace hullslam {
@@ -15,7 +14,7 @@ namespace hullslam {
 int RunConvertVocabulary(int argc, char** argv) {
   CLI::App app(
       "Converts a vocabulary between the text format of ORB-SLAM2 and the binary form of HullSLAM.",
-      "convert_vocabulary");
+      argv[0]);
   std::filesystem::path input;
   std::filesystem::path output;
   std::string form;

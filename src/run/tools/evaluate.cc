@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/evaluate.h"
-
 #include <CLI/CLI.hpp>
 
 #include "run/command_line.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
 #include "run/tools/objects_command.h"
 #include "run/tools/trajectory_command.h"
 
@@ -12,7 +11,7 @@ namespace hullslam {
 namespace {}  // namespace
 
 int RunEvaluate(int argc, char** argv) {
-  CLI::App app("Evaluates finished runs.", "evaluate");
+  CLI::App app("Evaluates finished runs.", argv[0]);
   AddVersionAndExitCodes(app);
   TrajectoryArguments trajectory;
   ObjectsArguments objects;

@@ -1,150 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/export.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "exports/colmap_model.h"
 #include "exports/export_folder.h"
-#include "exports/g2o_graph.h"
-#include "exports/glb_file.h"
-#include "exports/pose_files.h"
-#include "exports/scene_ply.h"
-#include "files/atomic_file.h"
-#include "frame/dynamic_mask.h"
+#include "exports/export_formats.h"
+#include "exports/export_input.h"
 #include "hullslam/tracking/tracking_options.h"
-#include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "run/export_images.h"
-#include "run/export_input.h"
 #include "run/messages.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
+#include "util/split_names.h"
 
 namespace hullslam {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct ExportArguments {
   ExportSource source;
   std::string format;
-  fs::path output;
+  ExportOptions options;
   bool force = false;
-  bool text = false;
-  std::string shape = "ellipsoids";
   std::string masked_classes = TrackingOptions().dynamic_classes;
   bool quiet = false;
 };
 
-// Writes the export and returns a text about what is in it.
-using ExportWriter = std::string (*)(const ExportArguments& arguments, ExportInput& input);
-
-struct ExportFormat {
-  const char* name;
-  const char* meaning;
-  ExportNeed need;
-  ExportWriter write;
-};
-
-ObjectShape ShapeOf(const ExportArguments& arguments) {
-  return arguments.shape == "boxes" ? ObjectShape::kBoxes : ObjectShape::kEllipsoids;
-}
-
-std::string WriteColmap(const ExportArguments& arguments, ExportInput& input) {
-  const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
-  ExportFolder folder(arguments.output);
-  WriteImages(images, view, input, folder);
-  std::vector<Colour> colours;
-  for (const ColouredPoint& point : input.model.points) {
-    colours.push_back(point.colour);
-  }
-  const ColmapModel model =
-      MakeColmapModel(input.map->map, input.map->located, colours, images, view);
-  for (FileContent& file : arguments.text ? FormatColmapText(model) : FormatColmapBinary(model)) {
-    file.name = "sparse/0/" + file.name;
-    folder.Write(file);
-  }
-  folder.Commit();
-  return fmt::format("{} images, {} points with tracks", model.images.size(), model.points.size());
-}
-
-std::string WriteNerfstudio(const ExportArguments& arguments, ExportInput& input) {
-  constexpr const char* kPointsFile = "points.ply";
-  const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
-  ExportFolder folder(arguments.output);
-  WriteImages(images, view, input, folder);
-  const std::vector<NerfstudioFrame> frames =
-      WriteDepthsAndMasks(images, view, SplitNames(arguments.masked_classes), input, folder);
-  folder.Write({kPointsFile, FormatPointsPly(input.model.points)});
-  folder.Write({"transforms.json", FormatTransforms(view.camera(), frames, kPointsFile)});
-  folder.Commit();
-  return fmt::format("{} images{}{}, {} points", frames.size(),
-                     frames.front().depth.empty() ? "" : ", depths",
-                     frames.front().mask.empty() ? "" : ", masks", input.model.points.size());
-}
-
-std::string DescribeScene(const ExportModel& model) {
-  return fmt::format("{} poses, {} keyframes, {} points, {} objects", model.trajectory.size(),
-                     model.keyframes.size(), model.points.size(), model.scene.objects.size());
-}
-
-std::string WriteGlb(const ExportArguments& arguments, ExportInput& input) {
-  if (input.sequence) {
-    ColourPoints(input);
-  }
-  WriteFileAtomically(arguments.output, FormatGlb(input.model, ShapeOf(arguments)));
-  return DescribeScene(input.model);
-}
-
-std::string WritePly(const ExportArguments& arguments, ExportInput& input) {
-  if (input.sequence) {
-    ColourPoints(input);
-  }
-  WriteFileAtomically(arguments.output, FormatScenePly(input.model, ShapeOf(arguments)));
-  return DescribeScene(input.model);
-}
-
-std::string WriteG2o(const ExportArguments& arguments, ExportInput& input) {
-  const MapOfRun& map = *input.map;
-  WriteFileAtomically(arguments.output, FormatG2o(map.map, map.located, map.sensor));
-  return fmt::format("{} keyframes, {} landmarks", map.map.keyframes().size(),
-                     map.located.positions.size());
-}
-
-std::string WriteKitti(const ExportArguments& arguments, ExportInput& input) {
-  WriteFileAtomically(arguments.output, FormatKittiPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
-}
-
-std::string WriteEuroc(const ExportArguments& arguments, ExportInput& input) {
-  WriteFileAtomically(arguments.output, FormatEurocPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
-}
-
-constexpr std::array<ExportFormat, 7> kFormats = {{
-    {"colmap", "a folder with undistorted images and a sparse model with tracks",
-     ExportNeed::kImages, WriteColmap},
-    {"nerfstudio", "a folder with transforms.json, undistorted images, depths and masks",
-     ExportNeed::kImages, WriteNerfstudio},
-    {"g2o", "a text file with the pose graph and landmarks", ExportNeed::kMap, WriteG2o},
-    {"gltf", "a binary glTF file (.glb) with points, path, cameras and objects", ExportNeed::kScene,
-     WriteGlb},
-    {"ply", "a PLY file with points, cameras and objects", ExportNeed::kScene, WritePly},
-    {"kitti", "a text file with a 3 x 4 matrix per pose", ExportNeed::kPoses, WriteKitti},
-    {"euroc", "a CSV file with a pose per line", ExportNeed::kPoses, WriteEuroc},
-}};
-
 std::vector<std::string> FormatNames() {
   std::vector<std::string> names;
-  for (const ExportFormat& format : kFormats) {
+  for (const ExportFormat& format : ExportFormats()) {
     names.emplace_back(format.name);
   }
   return names;
@@ -152,7 +39,7 @@ std::vector<std::string> FormatNames() {
 
 std::string DescribeFormats() {
   std::string text = "Formats:\n";
-  for (const ExportFormat& format : kFormats) {
+  for (const ExportFormat& format : ExportFormats()) {
     text += fmt::format("  {:<11} {}\n", format.name, format.meaning);
   }
   return text;
@@ -165,12 +52,20 @@ void AddArguments(CLI::App& app, ExportArguments& arguments) {
   app.add_option("--to", arguments.format, "the format; see below")
       ->required()
       ->check(CLI::IsMember(FormatNames()));
-  app.add_option("--output", arguments.output, "the file or folder to write")->required();
+  app.add_option("--output", arguments.options.output, "the file or folder to write")->required();
   app.add_flag("--force", arguments.force, "write to a file that exists or a folder with files");
-  app.add_flag("--text", arguments.text, "colmap: write text files in place of binary ones");
-  app.add_option("--objects-as", arguments.shape, "gltf, ply: the shape of the objects")
+  app.add_flag("--text", arguments.options.as_text,
+               "colmap: write text files in place of binary ones");
+  const std::map<std::string, ObjectShape> shapes = {{"boxes", ObjectShape::kBoxes},
+                                                     {"ellipsoids", ObjectShape::kEllipsoids}};
+  app.add_option_function<std::string>(
+         "--objects-as",
+         [&arguments, shapes](const std::string& name) {
+           arguments.options.shape = shapes.at(name);
+         },
+         "gltf, ply: the shape of the objects")
       ->check(CLI::IsMember({"boxes", "ellipsoids"}))
-      ->capture_default_str();
+      ->default_str("ellipsoids");
   app.add_option("--masked-classes", arguments.masked_classes,
                  "nerfstudio: classes whose masks are left out of training, separated by commas")
       ->capture_default_str();
@@ -184,7 +79,7 @@ void AddArguments(CLI::App& app, ExportArguments& arguments) {
 }  // namespace
 
 int RunExport(int argc, char** argv) {
-  CLI::App app("Writes a finished run or a saved map in a format of other programs.", "export");
+  CLI::App app("Writes a finished run or a saved map in a format of other programs.", argv[0]);
   ExportArguments arguments;
   AddArguments(app, arguments);
   AddVersionAndExitCodes(app);
@@ -192,17 +87,18 @@ int RunExport(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const auto* const format = std::find_if(
-      kFormats.begin(), kFormats.end(),
+  arguments.options.masked_classes = SplitNames(arguments.masked_classes);
+  const auto format = std::find_if(
+      ExportFormats().begin(), ExportFormats().end(),
       [&](const ExportFormat& candidate) { return arguments.format == candidate.name; });
   ExportInput input = ReadExportInput(arguments.source, format->need);
-  CheckExportPath(arguments.output, input.read, arguments.force);
-  const std::string content = format->write(arguments, input);
+  CheckExportPath(arguments.options.output, input.read, arguments.force);
+  const std::string content = format->write(arguments.options, input);
   for (const std::string& note : input.notes) {
     PrintError("note: {}\n", note);
   }
   if (!arguments.quiet) {
-    Print("wrote {}: {}\n", arguments.output.string(), content);
+    Print("wrote {}: {}\n", arguments.options.output.string(), content);
   }
   return kDone;
 }

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/map_objects.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <iterator>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "eval/object_metrics.h"
 #include "files/plausible.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/tum_sequence.h"
@@ -22,6 +17,7 @@
 #include "hullslam/system/known_pose_mapper.h"
 #include "hullslam/util/error.h"
 #include "objects/object_view.h"
+#include "results/object_file.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/datasets/given_groundtruth.h"
@@ -35,8 +31,11 @@
 #include "run/progress.h"
 #include "run/report_output.h"
 #include "run/settings_choice.h"
+#include "run/tools/commands.h"
+#include "scene/make_scene.h"
 #include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
+#include "system/view_chooser.h"
 
 namespace hullslam {
 namespace {
@@ -55,8 +54,7 @@ struct MapObjectsArguments {
   std::vector<std::string> overrides;
   std::filesystem::path output =
       "out_objects";  // not the default of rgbd_tum, whose folder may contain the poses to be used
-  double min_distance = 0.05;  // m
-  double min_angle = 5.0;      // degrees
+  ViewChoice choice;
   bool overwrite = false;
   bool without_depth = false;
   bool report = false;
@@ -77,12 +75,12 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);
   auto* const min_distance = app.add_option(
-      "--min-distance", arguments.min_distance,
+      "--min-distance", arguments.choice.min_distance,
       "a frame is used if the camera has moved this far since the last used frame, m; a "
       "quarter of it is enough if a mask has moved by half of its size");
   ExpectNumber(*min_distance->capture_default_str(), 0.0, kMostMetres);
   auto* const min_angle =
-      app.add_option("--min-angle", arguments.min_angle,
+      app.add_option("--min-angle", arguments.choice.min_angle,
                      "a frame is also used if the camera has turned this far since then, degrees");
   ExpectNumber(*min_angle->capture_default_str(), 0.0, 360.0);
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
@@ -105,69 +103,17 @@ struct ChosenViews {
   size_t without_pose = 0;  // frames
 };
 
-// Whether the camera has moved by `share` times the least distance, or has turned by `share` times
-// the least angle.
-bool HasMoved(const MapObjectsArguments& arguments, const Rigid3& last, const Rigid3& pose,
-              double share) {
-  const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
-  return (pose.translation - last.translation).norm() >= share * arguments.min_distance ||
-         angle >= share * arguments.min_angle;
-}
-
-struct LabelledBox {
-  std::string label;
-  Eigen::AlignedBox2d box;  // raw px
-};
-
-std::vector<LabelledBox> BoxesOf(const std::vector<InstanceMask>& masks) {
-  std::vector<LabelledBox> boxes;
-  for (const InstanceMask& mask : masks) {
-    LabelledBox& labelled = boxes.emplace_back();
-    labelled.label = mask.label;
-    for (const auto& outline : mask.outlines) {
-      for (const Eigen::Vector2d& point : outline) {
-        labelled.box.extend(point);
-      }
-    }
-  }
-  return boxes;
-}
-
-// Whether a mask has moved by more than half of its size, or is new.
-bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<LabelledBox>& boxes) {
-  constexpr double kMostMoved = 0.5;
-  return std::any_of(boxes.begin(), boxes.end(), [&](const LabelledBox& now) {
-    return std::none_of(last.begin(), last.end(), [&](const LabelledBox& then) {
-      return now.label == then.label && (now.box.center() - then.box.center()).norm() <=
-                                            kMostMoved * now.box.sizes().minCoeff();
-    });
-  });
-}
-
-// Chooses the frames to use: those at which the camera has moved enough since the last chosen
-// frame. If a mask has moved by more than half of its size, a quarter of that motion is enough.
-// This gives small objects that are seen for a short time enough views, and it keeps neighbouring
-// views of an object similar enough for association. Throws InputError if no frame has a pose.
+// Chooses the frames to use (ViewChooser). Throws InputError if no frame has a pose.
 ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<FramePaths>& frames,
                         const Trajectory& poses, const SequenceMasks& masks) {
-  constexpr double kSmallMotion = 0.25;
   ChosenViews chosen;
-  std::vector<LabelledBox> last_boxes;
+  ViewChooser chooser(arguments.choice);
   for (size_t i = 0; i < frames.size(); ++i) {
     const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxGapOfPoses);
     if (!pose) {
       ++chosen.without_pose;
-      continue;
-    }
-    const Rigid3* const last = chosen.views.empty() ? nullptr : &chosen.views.back().world_from_cam;
-    if (last != nullptr && !HasMoved(arguments, *last, *pose, kSmallMotion)) {
-      continue;
-    }
-    std::vector<LabelledBox> boxes = BoxesOf(masks.Read(i));
-    if (last == nullptr || HasMoved(arguments, *last, *pose, 1.0) ||
-        HasMaskMoved(last_boxes, boxes)) {
+    } else if (chooser.Choose(*pose, [&] { return masks.Read(i); })) {
       chosen.views.push_back({i, *pose});
-      last_boxes = std::move(boxes);
     }
   }
   if (chosen.views.empty()) {
@@ -274,6 +220,7 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.provenance.pipeline = "objects";
   summary.provenance.masks_format = masks.format();
   summary.provenance.sequence = arguments.sequence.string();
+  summary.provenance.dataset = inputs.sequence.dataset;
   return summary;
 }
 
@@ -305,7 +252,7 @@ std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments
 
 int RunMapObjects(int argc, char** argv) {
   CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
-               kProgram);
+               argv[0]);
   MapObjectsArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
@@ -330,7 +277,7 @@ int RunMapObjects(int argc, char** argv) {
   const bool is_complete = MapAll(arguments, options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
-  const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);
+  const ObjectReport report = MeasuredObjects(run.map(), camera, arguments.sequence);
   RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
   ObjectCounts counts = run.counts();
   counts.frames_without_masks = masks.without_masks();
@@ -338,7 +285,7 @@ int RunMapObjects(int argc, char** argv) {
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
   summary.provenance.interrupted = !is_complete;
-  const Scene scene = CollectScene(run.map(), report, inputs.groundtruth);
+  const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
   WriteOutputs(output, run, report, scene, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);

@@ -12,9 +12,9 @@
 
 #include "eval/object_metrics.h"
 #include "hullslam/util/error.h"
+#include "results/finished_run.h"
 #include "results/json_text.h"
 #include "results/object_file.h"
-#include "results/summary.h"
 #include "run/messages.h"
 #include "run/object_outputs.h"
 #include "run/tools/objects_truth.h"
@@ -86,13 +86,11 @@ void PrintText(const ObjectReport& report, AlignmentKind alignment) {
   }
 }
 
-// The alignment that summary.json names, kSe3 without this file. If it is kSim3, the unit of length
-// of the run is not the metre.
+// The alignment with the ground truth. Without a summary.json the unit of length is the metre.
 AlignmentKind FindAlignment(const std::filesystem::path& run) {
   std::error_code error;
-  const std::filesystem::path summary = run / "summary.json";
   const bool is_scaled =
-      std::filesystem::exists(summary, error) && ReadAlignment(summary) == AlignmentKind::kSim3;
+      std::filesystem::exists(run / "summary.json", error) && !OpenFinishedRun(run).IsMetric();
   return is_scaled ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
 
@@ -140,7 +138,7 @@ void RunObjectsCommand(const ObjectsArguments& arguments) {
       arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);
   std::optional<TruthEvaluation> truth;
   if (!arguments.groundtruth.empty()) {
-    truth = EvaluateTruth(arguments, report, alignment);
+    truth = ReadAndEvaluateTruth(arguments, report, alignment);
   }
   if (arguments.json) {
     PrintJson(report, truth);

@@ -126,43 +126,10 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   }
 }
 
-// The factor that converts errors of orientation (radians) to errors of position (m): the mean
-// distance of the mapped objects from the keyframes that observe them. 1 if no object is mapped.
-// `scale` is the length of one unit of the map in metres.
-double MeanDistance(const ObjectReport& report, double scale) {
-  double sum = 0.0;
-  size_t count = 0;
-  for (const ReportedObject& object : report.objects) {
-    if (object.state == ObjectState::kMapped) {
-      for (const ReportedView& view : object.views) {
-        sum += (view.cam_from_world * object.ellipsoid.world_from_object.translation).norm();
-        ++count;
-      }
-    }
-  }
-  return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
-}
-
-// The transform from the world of the run, whose unit of length is `scale` metres, to the true
-// world. The orientations are used too, because the positions do not determine the rotation of the
-// world if the camera hardly moved.
-Sim3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double scale, double lever) {
-  std::vector<Rigid3> truths;
-  std::vector<Rigid3> estimates;
-  for (const auto& [truth, estimate] :
-       PairPoses(groundtruth, run, PairingRule::kTum, DefaultMaxDifference(PairingRule::kTum))) {
-    truths.push_back(groundtruth[truth].world_from_cam);
-    estimates.push_back(run[estimate].world_from_cam);
-    estimates.back().translation *= scale;
-  }
-  const Rigid3 truth_from_scaled = AlignPoses(estimates, truths, lever);
-  return {scale, truth_from_scaled.rotation, truth_from_scaled.translation};
-}
-
 }  // namespace
 
-TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
-                              AlignmentKind alignment) {
+TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
+                                     AlignmentKind alignment) {
   const std::filesystem::path folder = arguments.groundtruth.parent_path();
   const Trajectory groundtruth = ReadTrajectory(folder / "groundtruth.txt");
   const Trajectory run = ReadTrajectory(arguments.run / "trajectory.txt");
@@ -170,24 +137,10 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
   if (!ate.ok()) {
     throw InputError((arguments.run / "trajectory.txt").string() + ": " + ate.failure);
   }
-  TruthEvaluation evaluation;
   const TrueScene scene = ReadTrueScene(arguments.groundtruth);
-  evaluation.truths = scene.objects;
-  evaluation.sightings = ReadSightings(folder, evaluation.truths, report.camera, groundtruth, run);
-  evaluation.alignment = alignment;
-  evaluation.scale = ate.reference_from_estimate.scale;
-  const Sim3 truth_from_map =
-      AlignWorlds(groundtruth, run, evaluation.scale, MeanDistance(report, evaluation.scale));
-  evaluation.comparison = CompareWithTruth(evaluation.truths, report, truth_from_map);
-  if (report.changes && scene.is_rearranged) {
-    evaluation.changes = CompareChanges(scene, *report.changes, truth_from_map,
-                                        evaluation.sightings, arguments.min_masks);
-  }
-  evaluation.counts = CountMapped(evaluation.truths, evaluation.comparison, evaluation.sightings,
-                                  arguments.min_masks);
-  evaluation.ate_rmse_m = ate.errors.rmse;
-  evaluation.min_masks = arguments.min_masks;
-  return evaluation;
+  return EvaluateTruth(scene, {groundtruth, run, ate, alignment}, report,
+                       ReadSightings(folder, scene.objects, report.camera, groundtruth, run),
+                       arguments.min_masks);
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/query_objects.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/object_metrics.h"
 #include "files/atomic_file.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
@@ -22,9 +21,10 @@
 #include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
 #include "run/program.h"
+#include "run/tools/commands.h"
 #include "scene/answer.h"
+#include "scene/make_scene.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
 #include "util/printable.h"
@@ -105,8 +105,8 @@ void CheckArguments(const QueryArguments& arguments) {
 
 Scene SceneOfMap(const fs::path& path) {
   const StoredMap stored = ReadMap(path);
-  return CollectScene(stored.map, CollectObjects(stored.map, stored.settings.camera, path),
-                      std::nullopt);
+  return MakeScene(stored.map, MeasuredObjects(stored.map, stored.settings.camera, path),
+                   std::nullopt);
 }
 
 Scene LoadScene(const fs::path& source) {
@@ -236,7 +236,7 @@ void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {
 }  // namespace
 
 int RunQueryObjects(int argc, char** argv) {
-  CLI::App app("Answers questions about the objects of a run or of a saved map.", "query_objects");
+  CLI::App app("Answers questions about the objects of a run or of a saved map.", argv[0]);
   QueryArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

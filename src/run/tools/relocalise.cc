@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/relocalise.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -33,6 +31,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/settings_choice.h"
+#include "run/tools/commands.h"
 #include "run/vocabularies.h"
 #include "util/median.h"
 
@@ -343,7 +342,7 @@ int RunRelocalise(int argc, char** argv) {
   CLI::App app(
       "Measures how well single frames are found in a map of other frames of the same sequence.\n"
       "Their true poses are those of groundtruth.txt, aligned with the trajectory of the map.",
-      "relocalise");
+      argv[0]);
   RelocaliseArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

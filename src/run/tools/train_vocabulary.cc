@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/train_vocabulary.h"
+#include "bow/train_vocabulary.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include <system_error>
 #include <vector>
 
-#include "bow/train_vocabulary.h"
 #include "features/extractor.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "run/command_line.h"
@@ -20,6 +19,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/tools/commands.h"
 #include "run/vocabularies.h"
 #include "sequences/image_file.h"
 #include "util/parallel_runner.h"
@@ -167,7 +167,7 @@ std::optional<Vocabulary> Train(const TrainVocabularyArguments& arguments,
 }  // namespace
 
 int RunTrainVocabulary(int argc, char** argv) {
-  CLI::App app("Trains a vocabulary of visual words on images.", "train_vocabulary");
+  CLI::App app("Trains a vocabulary of visual words on images.", argv[0]);
   TrainVocabularyArguments arguments;
   AddOptions(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

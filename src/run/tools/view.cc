@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/view.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
@@ -12,6 +10,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/report_output.h"
+#include "run/tools/commands.h"
 
 namespace hullslam {
 namespace {
@@ -51,7 +50,7 @@ int RunView(int argc, char** argv) {
   CLI::App app(
       "Shows a finished run or a saved map in a browser until Ctrl-C, or writes the page to a "
       "file.",
-      "view");
+      argv[0]);
   ViewArguments arguments;
   app.add_option("RUN_DIR|MAP", arguments.input, "output folder of a run, or a file of --save-map")
       ->required();

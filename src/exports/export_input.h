@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "eval/located_landmarks.h"
 #include "exports/export_model.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "map/located_landmarks.h"
 
 namespace hullslam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/mcap_messages.h"
+#include "exports/mcap_messages.h"
 
 #include <fmt/format.h>
 

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/export_input.h"
+#include "exports/export_input.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "files/json_file.h"
-#include "files/json_node.h"
+#include "eval/object_metrics.h"
+#include "files/canonical_path.h"
 #include "hullslam/map_files/map_file.h"
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 #include "map/islands.h"
-#include "results/object_file.h"
-#include "results/ply_points.h"
-#include "results/scene_file.h"
-#include "run/map_session.h"
-#include "run/object_outputs.h"
+#include "results/finished_run.h"
+#include "scene/make_scene.h"
 #include "sequences/run_sequence.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
@@ -27,39 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Colour kGreyPoint = {128, 128, 128};
-
-// What summary.json says of a run.
-struct RunFacts {
-  RunOpening opening;
-  std::string sequence;
-  std::string masks;
-  std::string masks_format;
-  std::string map;
-  size_t keyframes = 0;
-  size_t landmarks = 0;
-};
-
-RunFacts ReadRunFacts(const fs::path& folder) {
-  const fs::path file = folder / "summary.json";
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    throw InputError(folder.string() +
-                     ": has no summary.json, expected the output folder of a run or a map file");
-  }
-  const nlohmann::json json = ReadJson(file);
-  const JsonNode top(file, json);
-  const JsonNode provenance = top.At("provenance");
-  const auto text = [&](const char* key) {
-    return provenance.Has(key) ? provenance.At(key).Text() : std::string();
-  };
-  return {.opening = ReadRunOpening(json),
-          .sequence = text("sequence"),
-          .masks = text("masks"),
-          .masks_format = text("masks_format"),
-          .map = text("map"),
-          .keyframes = top.At("map").At("keyframes").Count(),
-          .landmarks = top.At("map").At("landmarks").Count()};
-}
 
 MapOfRun LoadMap(const fs::path& path, std::vector<std::string>& notes) {
   StoredMap stored = ReadMap(path);
@@ -89,29 +52,29 @@ void UseMap(const fs::path& path, ExportInput& input) {
 }
 
 // A later run that goes on with the map may have replaced it. Then its world is another one.
-void CheckMapIsOfRun(const fs::path& path, const RunFacts& facts, const Map& map) {
-  if (map.keyframes().size() != facts.keyframes || map.landmarks().size() != facts.landmarks) {
+void CheckMapIsOfRun(const fs::path& path, const FinishedRun& run, const Map& map) {
+  if (map.keyframes().size() != run.keyframes || map.landmarks().size() != run.landmarks) {
     throw InputError(fmt::format(
         "{}: has {} keyframes and {} landmarks, but the run had {} and {}; expected the map that "
         "this run has saved (--map FILE names another one)",
-        path.string(), map.keyframes().size(), map.landmarks().size(), facts.keyframes,
-        facts.landmarks));
+        path.string(), map.keyframes().size(), map.landmarks().size(), run.keyframes,
+        run.landmarks));
   }
 }
 
-void UseMapOfRun(const ExportSource& source, const RunFacts& facts, bool is_needed,
+void UseMapOfRun(const ExportSource& source, const FinishedRun& run, bool is_needed,
                  ExportInput& input) {
   std::optional<fs::path> path = source.map;
   if (source.map.empty()) {
-    path = FindRunInput(facts.map, source.input);
+    path = run.Find(run.map);
   }
   if (path) {
     UseMap(*path, input);
-    CheckMapIsOfRun(*path, facts, input.map->map);
+    CheckMapIsOfRun(*path, run, input.map->map);
     return;
   }
-  const std::string reason = facts.map.empty() ? "the run has not saved its map"
-                                               : "its map '" + facts.map + "' is not found";
+  const std::string reason =
+      run.map.empty() ? "the run has not saved its map" : "its map '" + run.map + "' is not found";
   if (is_needed) {
     throw InputError(fmt::format(
         "{}: {}, which has the keypoints and tracks for this format; repeat the run with "
@@ -121,34 +84,27 @@ void UseMapOfRun(const ExportSource& source, const RunFacts& facts, bool is_need
   input.notes.push_back(reason + ", so the points have no colours");
 }
 
-void ReadPointsOfRun(const fs::path& folder, ExportModel& model) {
-  std::error_code error;
-  if (!fs::exists(folder / "map.ply", error)) {
-    return;
-  }
-  for (const Eigen::Vector3f& position : ReadMapLandmarks(folder / "map.ply").positions) {
+void UsePointsOfRun(const FinishedRun& run, ExportModel& model) {
+  for (const Eigen::Vector3f& position : run.ReadLandmarkPoints().value_or(PlyPoints()).positions) {
     model.points.push_back({position.cast<double>(), kGreyPoint});
   }
 }
 
-void ReadSceneOfRun(const fs::path& folder, ExportModel& model) {
-  std::error_code error;
-  if (fs::exists(folder / "scene.json", error)) {
-    model.scene = ReadScene(folder / "scene.json");
-  }
-  if (fs::exists(folder / "objects.json", error)) {
-    model.camera = ReadObjects(folder / "objects.json").camera;
+void UseSceneOfRun(const FinishedRun& run, ExportModel& model) {
+  model.scene = run.ReadSceneGraph().value_or(Scene());
+  if (const std::optional<ObjectReport> objects = run.ReadObjectReport()) {
+    model.camera = objects->camera;
   }
 }
 
-void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_needed,
+void UseSequence(const ExportSource& source, const FinishedRun& run, bool is_needed,
                  ExportInput& input) {
   std::optional<fs::path> path = source.sequence;
   if (source.sequence.empty()) {
-    path = FindRunInput(facts.sequence, source.input);
+    path = run.Find(run.sequence.path);
   }
   if (!path) {
-    const std::string reason = "the sequence '" + facts.sequence + "' of the run is not found";
+    const std::string reason = "the sequence '" + run.sequence.path + "' of the run is not found";
     if (is_needed) {
       throw InputError(
           fmt::format("{}: {}, which has the images for this format; expected "
@@ -159,34 +115,30 @@ void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_need
     return;
   }
   const bool use_depth = !input.map->sensor.IsMonocular();
-  input.sequence = OpenRunSequence(facts.opening, *path, input.map->sensor.camera, use_depth);
-  input.session = SessionName(source.sequence.empty() ? *path : fs::path(facts.sequence));
+  input.sequence = OpenRunSequence(run.sequence, *path, input.map->sensor.camera, use_depth);
+  input.session = CanonicalName(source.sequence.empty() ? *path : fs::path(run.sequence.path));
   input.read.push_back(*path);
-  if (const auto masks = FindRunInput(facts.masks, source.input)) {
-    input.masks = MasksOfRun{*masks, facts.masks_format};
+  if (const auto masks = run.Find(run.masks)) {
+    input.masks = MasksOfRun{*masks, run.masks_format};
     input.read.push_back(*masks);
   }
 }
 
 ExportInput ReadRun(const ExportSource& source, ExportNeed need) {
   ExportInput input;
-  const fs::path& folder = source.input;
-  input.read = {folder};
-  const RunFacts facts = ReadRunFacts(folder);
-  std::error_code error;
-  const bool has_frames = fs::exists(folder / "trajectory.txt", error);
-  input.model.trajectory = has_frames ? ReadTrajectory(folder / "trajectory.txt")
-                                      : ReadKeyframes(folder / "keyframes.txt");
+  input.read = {source.input};
+  const FinishedRun run = OpenFinishedRun(source.input);
+  input.model.trajectory = run.Has("trajectory.txt") ? run.ReadPoses() : run.ReadKeyframePoses();
   if (need == ExportNeed::kPoses) {
     return input;
   }
-  ReadSceneOfRun(folder, input.model);
-  UseMapOfRun(source, facts, need >= ExportNeed::kMap, input);
+  UseSceneOfRun(run, input.model);
+  UseMapOfRun(source, run, need >= ExportNeed::kMap, input);
   if (!input.map) {
-    input.model.keyframes = ReadKeyframes(folder / "keyframes.txt");
-    ReadPointsOfRun(folder, input.model);
+    input.model.keyframes = run.ReadKeyframePoses();
+    UsePointsOfRun(run, input.model);
   } else if (need != ExportNeed::kMap) {
-    UseSequence(source, facts, need == ExportNeed::kImages, input);
+    UseSequence(source, run, need == ExportNeed::kImages, input);
   }
   return input;
 }
@@ -207,7 +159,7 @@ ExportInput ReadMapFile(const ExportSource& source, ExportNeed need) {
   const MapOfRun& loaded = *input.map;
   input.model.trajectory = KeyframeTrajectory(loaded.map);
   input.model.scene =
-      CollectScene(loaded.map, CollectObjects(loaded.map, loaded.sensor.camera, {}), std::nullopt);
+      MakeScene(loaded.map, MeasuredObjects(loaded.map, loaded.sensor.camera, {}), std::nullopt);
   if (need == ExportNeed::kScene) {
     input.notes.emplace_back(
         "a map has no images, so the points have no colours; the output folder of its run gives "

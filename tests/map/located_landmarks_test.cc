@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eval/located_landmarks.h"
+#include "map/located_landmarks.h"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "exports/export_folder.h"
+#include "exports/export_input.h"
 #include "exports/keyframe_images.h"
 #include "exports/nerfstudio.h"
 #include "exports/pinhole_view.h"
-#include "run/export_input.h"
 
 namespace hullslam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/export_images.h"
+#include "exports/export_images.h"
 
 #include <fmt/format.h>
 

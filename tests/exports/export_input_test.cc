@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/export_input.h"
+#include "exports/export_input.h"
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ class ExportInputTest : public ::testing::Test {
   }
   void WriteSummary(size_t keyframes, size_t landmarks, const std::string& map) const {
     folder_.Write("run/summary.json",
-                  "{\"map\": {\"keyframes\": " + std::to_string(keyframes) +
-                      ", \"landmarks\": " + std::to_string(landmarks) +
+                  "{\"trajectory\": {\"alignment\": \"se3\"}, \"map\": {\"keyframes\": " +
+                      std::to_string(keyframes) + ", \"landmarks\": " + std::to_string(landmarks) +
                       "}, \"provenance\": {\"program\": \"rgbd_tum\", \"sequence\": \"desk\", "
                       "\"masks\": null, \"map\": " +
                       (map.empty() ? "null" : "\"" + map + "\"") + "}}");
@@ -111,9 +111,9 @@ TEST_F(ExportInputTest, AMapAloneIsEnoughWithoutImages) {
 }
 
 TEST_F(ExportInputTest, BrokenFilesAreNamed) {
-  folder_.Write("run/summary.json", "{\"map\": 3}");
+  folder_.Write("run/summary.json", "{\"trajectory\": 3}");
   ExpectInputError([&] { ReadExportInput(source_, ExportNeed::kPoses); },
-                   {"summary.json", "provenance"});
+                   {"summary.json", "trajectory is 3"});
   folder_.Write("run/summary.json", "{");
   ExpectInputError([&] { ReadExportInput(source_, ExportNeed::kPoses); }, {"summary.json"});
   source_.input = folder_.path() / "nothing";

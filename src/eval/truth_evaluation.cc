@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eval/truth_evaluation.h"
+
+#include <utility>
+
+namespace hullslam {
+namespace {
+
+// The factor that converts errors of orientation (radians) to errors of position (m): the mean
+// distance of the mapped objects from the keyframes that observe them. 1 if no object is mapped.
+// `scale` is the length of one unit of the map in metres.
+double MeanDistance(const ObjectReport& report, double scale) {
+  double sum = 0.0;
+  size_t count = 0;
+  for (const ReportedObject& object : report.objects) {
+    if (object.state == ObjectState::kMapped) {
+      for (const ReportedView& view : object.views) {
+        sum += (view.cam_from_world * object.ellipsoid.world_from_object.translation).norm();
+        ++count;
+      }
+    }
+  }
+  return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
+}
+
+}  // namespace
+
+Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectReport& report) {
+  const double scale = poses.ate.reference_from_estimate.scale;
+  std::vector<Rigid3> truths;
+  std::vector<Rigid3> estimates;
+  for (const auto& [truth, estimate] : PairPoses(poses.groundtruth, poses.run, PairingRule::kTum,
+                                                 DefaultMaxDifference(PairingRule::kTum))) {
+    truths.push_back(poses.groundtruth[truth].world_from_cam);
+    estimates.push_back(poses.run[estimate].world_from_cam);
+    estimates.back().translation *= scale;
+  }
+  const Rigid3 truth_from_scaled = AlignPoses(estimates, truths, MeanDistance(report, scale));
+  return {scale, truth_from_scaled.rotation, truth_from_scaled.translation};
+}
+
+TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
+                              const ObjectReport& report, std::vector<size_t> sightings,
+                              size_t min_masks) {
+  TruthEvaluation evaluation;
+  evaluation.truths = scene.objects;
+  evaluation.sightings = std::move(sightings);
+  evaluation.alignment = poses.alignment;
+  evaluation.scale = poses.ate.reference_from_estimate.scale;
+  const Sim3 truth_from_map = AlignWorlds(poses, report);
+  evaluation.comparison = CompareWithTruth(evaluation.truths, report, truth_from_map);
+  if (report.changes && scene.is_rearranged) {
+    evaluation.changes =
+        CompareChanges(scene, *report.changes, truth_from_map, evaluation.sightings, min_masks);
+  }
+  evaluation.counts =
+      CountMapped(evaluation.truths, evaluation.comparison, evaluation.sightings, min_masks);
+  evaluation.ate_rmse_m = poses.ate.errors.rmse;
+  evaluation.min_masks = min_masks;
+  return evaluation;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "eval/change_groundtruth.h"
+#include "eval/object_groundtruth.h"
+#include "hullslam/eval/ate.h"
+
+namespace hullslam {
+
+// The objects of a run compared with the true objects of the synthetic sequence.
+struct TruthEvaluation {
+  std::vector<TrueObject> truths;
+  std::vector<size_t> sightings;  // masks of each true object; empty if the sequence has no masks
+  GroundtruthComparison comparison;
+  TruthCounts counts;
+  std::optional<ChangeComparison>
+      changes;  // only of a run that went on with a map from before the rearrangement
+  AlignmentKind alignment = AlignmentKind::kSe3;  // kSe3 or kSim3
+  double scale = 1.0;                             // metres per unit of the map
+  double ate_rmse_m = 0.0;                        // ATE of the run, aligned by positions
+  size_t min_masks = 0;
+};
+
+// The poses of a run and the true ones, aligned by their positions.
+struct AlignedPoses {
+  const Trajectory& groundtruth;
+  const Trajectory& run;
+  const AteReport& ate;  // of these two; ok()
+  AlignmentKind alignment;
+};
+
+// The transform from the world of the run to the true world. The scale is that of the alignment by
+// positions. The orientations are used too, because the positions do not determine the rotation of
+// the world if the camera hardly moved: an error of orientation (radians) counts as much as an
+// error of position (m) at the mean distance of the mapped objects from the keyframes that observe
+// them.
+Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectReport& report);
+
+// Compares the mapped objects of a report with the true objects. `sightings` counts the masks of
+// each true object during the run (CountSightings()); empty if the sequence has no masks.
+TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
+                              const ObjectReport& report, std::vector<size_t> sightings,
+                              size_t min_masks);
+
+}  // namespace hullslam

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exports/export_formats.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+#include "exports/colmap_model.h"
+#include "exports/export_folder.h"
+#include "exports/export_images.h"
+#include "exports/g2o_graph.h"
+#include "exports/glb_file.h"
+#include "exports/pose_files.h"
+#include "exports/scene_ply.h"
+#include "files/atomic_file.h"
+
+namespace hullslam {
+namespace {
+
+std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
+  const std::vector<KeyframeImage> images = FindImages(input);
+  const PinholeView view(input.map->sensor.camera);
+  ExportFolder folder(options.output);
+  WriteImages(images, view, input, folder);
+  std::vector<Colour> colours;
+  for (const ColouredPoint& point : input.model.points) {
+    colours.push_back(point.colour);
+  }
+  const ColmapModel model =
+      MakeColmapModel(input.map->map, input.map->located, colours, images, view);
+  for (FileContent& file : options.as_text ? FormatColmapText(model) : FormatColmapBinary(model)) {
+    file.name = "sparse/0/" + file.name;
+    folder.Write(file);
+  }
+  folder.Commit();
+  return fmt::format("{} images, {} points with tracks", model.images.size(), model.points.size());
+}
+
+std::string WriteNerfstudio(const ExportOptions& options, ExportInput& input) {
+  constexpr const char* kPointsFile = "points.ply";
+  const std::vector<KeyframeImage> images = FindImages(input);
+  const PinholeView view(input.map->sensor.camera);
+  ExportFolder folder(options.output);
+  WriteImages(images, view, input, folder);
+  const std::vector<NerfstudioFrame> frames =
+      WriteDepthsAndMasks(images, view, options.masked_classes, input, folder);
+  folder.Write({kPointsFile, FormatPointsPly(input.model.points)});
+  folder.Write({"transforms.json", FormatTransforms(view.camera(), frames, kPointsFile)});
+  folder.Commit();
+  return fmt::format("{} images{}{}, {} points", frames.size(),
+                     frames.front().depth.empty() ? "" : ", depths",
+                     frames.front().mask.empty() ? "" : ", masks", input.model.points.size());
+}
+
+std::string DescribeScene(const ExportModel& model) {
+  return fmt::format("{} poses, {} keyframes, {} points, {} objects", model.trajectory.size(),
+                     model.keyframes.size(), model.points.size(), model.scene.objects.size());
+}
+
+std::string WriteGlb(const ExportOptions& options, ExportInput& input) {
+  if (input.sequence) {
+    ColourPoints(input);
+  }
+  WriteFileAtomically(options.output, FormatGlb(input.model, options.shape));
+  return DescribeScene(input.model);
+}
+
+std::string WritePly(const ExportOptions& options, ExportInput& input) {
+  if (input.sequence) {
+    ColourPoints(input);
+  }
+  WriteFileAtomically(options.output, FormatScenePly(input.model, options.shape));
+  return DescribeScene(input.model);
+}
+
+std::string WriteG2o(const ExportOptions& options, ExportInput& input) {
+  const MapOfRun& map = *input.map;
+  WriteFileAtomically(options.output, FormatG2o(map.map, map.located, map.sensor));
+  return fmt::format("{} keyframes, {} landmarks", map.map.keyframes().size(),
+                     map.located.positions.size());
+}
+
+std::string WriteKitti(const ExportOptions& options, ExportInput& input) {
+  WriteFileAtomically(options.output, FormatKittiPoses(input.model.trajectory));
+  return fmt::format("{} poses", input.model.trajectory.size());
+}
+
+std::string WriteEuroc(const ExportOptions& options, ExportInput& input) {
+  WriteFileAtomically(options.output, FormatEurocPoses(input.model.trajectory));
+  return fmt::format("{} poses", input.model.trajectory.size());
+}
+
+constexpr std::array<ExportFormat, 7> kFormats = {{
+    {"colmap", "a folder with undistorted images and a sparse model with tracks",
+     ExportNeed::kImages, WriteColmap},
+    {"nerfstudio", "a folder with transforms.json, undistorted images, depths and masks",
+     ExportNeed::kImages, WriteNerfstudio},
+    {"g2o", "a text file with the pose graph and landmarks", ExportNeed::kMap, WriteG2o},
+    {"gltf", "a binary glTF file (.glb) with points, path, cameras and objects", ExportNeed::kScene,
+     WriteGlb},
+    {"ply", "a PLY file with points, cameras and objects", ExportNeed::kScene, WritePly},
+    {"kitti", "a text file with a 3 x 4 matrix per pose", ExportNeed::kPoses, WriteKitti},
+    {"euroc", "a CSV file with a pose per line", ExportNeed::kPoses, WriteEuroc},
+}};
+
+}  // namespace
+
+std::span<const ExportFormat> ExportFormats() { return kFormats; }
+
+}  // namespace hullslam

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exports/mcap_recording.h"
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "bags/mcap_writer.h"
+#include "bags/ros2_schemas.h"
+#include "exports/mcap_messages.h"
+#include "hullslam/util/error.h"
+#include "sequences/frame_colour.h"
+#include "sequences/image_file.h"
+#include "system/make_sensor.h"
+#include "view/run_pictures.h"
+#include "view/view_of_map.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kJpegQuality = 90;
+
+// Writes the messages of a run in the order of their times.
+class RunRecorder {
+ public:
+  RunRecorder(const std::filesystem::path& file, const RecordedRun& run)
+      : run_(run), writer_(file, run.writer) {
+    for (const StampedPose& pose : *run.trajectory) {
+      poses_[pose.timestamp] = pose.world_from_cam;
+    }
+  }
+
+  // Returns the number of images that could not be read.
+  size_t Write() {
+    // What holds for the whole run comes first, so that players show it from the beginning.
+    const RosTime start = ToRosTime(run_.sequence->frames.front().timestamp);
+    const std::vector<ReportedObject>& objects = run_.objects->objects;
+    WriteOnce("/map/path", "nav_msgs/msg/Path", start, PathMessage(start, *run_.trajectory));
+    WriteOnce("/map/points", "sensor_msgs/msg/PointCloud2", start, Points(start));
+    WriteOnce("/map/objects", "vision_msgs/msg/Detection3DArray", start,
+              DetectionsMessage(start, objects));
+    WriteOnce("/map/scene", "foxglove_msgs/msg/SceneUpdate", start, SceneMessage(start, objects));
+    const size_t missing = WriteFrames();
+    writer_.Close();
+    return missing;
+  }
+
+ private:
+  uint16_t Add(const char* topic, const char* type) {
+    return writer_.AddTopic(topic, type, Ros2Schema(type));
+  }
+
+  void WriteOnce(const char* topic, const char* type, RosTime time, const std::string& message) {
+    writer_.Write(Add(topic, type), time.Nanoseconds(), message);
+  }
+
+  // The landmarks, with colours of the images.
+  std::string Points(RosTime time) const {
+    const Sensor sensor = MakeSensor(*run_.options);
+    ViewModel model;
+    AddMap(*run_.map, sensor, run_.options->objects, model);
+    RunImageTasks(*run_.sequence, sensor.camera,
+                  ColourTasks(FindLandmarkPixels(*run_.map, sensor), model));
+    return PointsMessage(time, model.landmarks.positions, model.landmarks.colours);
+  }
+
+  size_t WriteFrames() {
+    const uint16_t transforms = Add("/tf", "tf2_msgs/msg/TFMessage");
+    const uint16_t cameras = Add("/camera/camera_info", "sensor_msgs/msg/CameraInfo");
+    const uint16_t images = Add("/camera/image/compressed", "sensor_msgs/msg/CompressedImage");
+    const PinholeCamera& camera = run_.options->camera;
+    size_t missing = 0;
+    for (size_t i = 0; i < run_.frames; ++i) {
+      const FramePaths& frame = run_.sequence->frames[i];
+      const RosTime time = ToRosTime(frame.timestamp);
+      if (const auto pose = poses_.find(frame.timestamp); pose != poses_.end()) {
+        writer_.Write(transforms, time.Nanoseconds(), TransformMessage(time, pose->second));
+      }
+      try {
+        const std::string jpeg =
+            EncodeJpeg(LoadColour(*run_.sequence, frame, camera), kJpegQuality);
+        writer_.Write(cameras, time.Nanoseconds(), CameraInfoMessageOf(time, camera));
+        writer_.Write(images, time.Nanoseconds(), JpegMessage(time, jpeg));
+      } catch (const InputError&) {
+        ++missing;
+      }
+    }
+    return missing;
+  }
+
+  const RecordedRun& run_;
+  McapWriter writer_;
+  std::map<double, Rigid3> poses_;  // by time stamp
+};
+
+}  // namespace
+
+size_t WriteRecording(const std::filesystem::path& file, const RecordedRun& run) {
+  return RunRecorder(file, run).Write();
+}
+
+}  // namespace hullslam

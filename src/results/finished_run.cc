@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/finished_run.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "files/json_file.h"
+#include "files/json_node.h"
+#include "hullslam/eval/ate.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/util/error.h"
+#include "results/object_file.h"
+#include "results/scene_file.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+AlignmentKind ReadAlignment(const JsonNode& top) {
+  const JsonNode alignment = top.At("trajectory").At("alignment");
+  const std::string name = alignment.Text();
+  for (const AlignmentKind kind :
+       {AlignmentKind::kNone, AlignmentKind::kSe3, AlignmentKind::kSim3}) {
+    if (name == ToString(kind)) {
+      return kind;
+    }
+  }
+  alignment.Fail("none, se3 or sim3");
+}
+
+// The text of a member; empty if it is absent or null.
+std::string TextOf(const JsonNode& node, const char* key) {
+  return node.Has(key) ? node.At(key).Text() : std::string();
+}
+
+// The data set of a run that does not name it, as runs before December 2026 did not. Empty for
+// the programs of VSLAM-LAB: those runs did not say either which list of images they had.
+std::string DatasetOfProgram(std::string_view program) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kDatasets = {
+      {{"_tum", "tum"},
+       {"map_objects", "tum"},
+       {"_icl", "icl"},
+       {"_euroc", "euroc"},
+       {"_bag", "bag"},
+       {"_video", "video"}}};
+  for (const auto& [suffix, dataset] : kDatasets) {
+    if (program.ends_with(suffix)) {
+      return std::string(dataset);
+    }
+  }
+  return {};
+}
+
+SequenceOfRun ReadSequence(const JsonNode& provenance, const std::string& program) {
+  SequenceOfRun sequence{.path = TextOf(provenance, "sequence"),
+                         .dataset = TextOf(provenance, "dataset")};
+  if (sequence.dataset.empty()) {
+    sequence.dataset = DatasetOfProgram(program);
+  }
+  if (provenance.Has("sequence_choices")) {
+    for (const auto& [name, choice] : provenance.At("sequence_choices").Members()) {
+      sequence.choices[name] = choice.Text();
+    }
+  }
+  return sequence;
+}
+
+}  // namespace
+
+bool FinishedRun::Has(const std::string& name) const {
+  std::error_code error;
+  return fs::exists(folder / name, error);
+}
+
+std::optional<fs::path> FinishedRun::Find(const std::string& path) const {
+  std::error_code error;
+  if (path.empty()) {
+    return std::nullopt;
+  }
+  if (fs::exists(path, error)) {
+    return fs::path(path);
+  }
+  for (fs::path above = fs::absolute(folder, error); !above.empty(); above = above.parent_path()) {
+    if (fs::exists(above / path, error)) {
+      return above / path;
+    }
+    if (above == above.root_path()) {
+      break;
+    }
+  }
+  return std::nullopt;
+}
+
+Trajectory FinishedRun::ReadPoses() const { return ReadTrajectory(folder / "trajectory.txt"); }
+
+Trajectory FinishedRun::ReadKeyframePoses() const {
+  return ReadKeyframes(folder / "keyframes.txt");
+}
+
+std::optional<PlyPoints> FinishedRun::ReadLandmarkPoints() const {
+  return Has("map.ply") ? std::optional(ReadMapLandmarks(folder / "map.ply")) : std::nullopt;
+}
+
+std::optional<ObjectReport> FinishedRun::ReadObjectReport() const {
+  return Has("objects.json") ? std::optional(ReadObjects(folder / "objects.json")) : std::nullopt;
+}
+
+std::optional<Scene> FinishedRun::ReadSceneGraph() const {
+  return Has("scene.json") ? std::optional(ReadScene(folder / "scene.json")) : std::nullopt;
+}
+
+std::optional<Trajectory> FinishedRun::ReadConvertedGroundtruth() const {
+  return Has("groundtruth.txt") ? std::optional(ReadTrajectory(folder / "groundtruth.txt"))
+                                : std::nullopt;
+}
+
+FinishedRun OpenFinishedRun(const fs::path& folder) {
+  FinishedRun run;
+  run.folder = folder;
+  if (!run.Has("summary.json")) {
+    throw InputError(folder.string() +
+                     ": has no summary.json, expected the output folder of a run");
+  }
+  const fs::path file = folder / "summary.json";
+  run.summary = std::make_shared<const nlohmann::json>(ReadJson(file));
+  const JsonNode top(file, *run.summary);
+  run.alignment = ReadAlignment(top);
+  run.keyframes = top.At("map").At("keyframes").Count();
+  run.landmarks = top.At("map").At("landmarks").Count();
+  const JsonNode provenance = top.At("provenance");
+  if (provenance.Members().empty()) {  // which refuses what is no object
+    provenance.Fail("what the run was made from");
+  }
+  run.program = TextOf(provenance, "program");
+  run.version = TextOf(provenance, "version");
+  run.sequence = ReadSequence(provenance, run.program);
+  run.masks = TextOf(provenance, "masks");
+  run.masks_format = TextOf(provenance, "masks_format");
+  run.map = TextOf(provenance, "map");
+  return run;
+}
+
+}  // namespace hullslam

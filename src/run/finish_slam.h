@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "hullslam/geometry/trajectory.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/system.h"
+#include "results/output_folder.h"
+#include "run/live_output.h"
+#include "run/load_settings.h"
+#include "run/mask_arguments.h"
+#include "run/run_arguments.h"
+#include "run/summarize_run.h"
+
+namespace hullslam {
+
+// A run whose frames have all been tracked and whose map is finished.
+struct EndedRun {
+  const RunArguments& arguments;
+  const LoadedSettings& settings;
+  const ImageSequence& sequence;
+  const SequenceMasks& masks;
+  const std::optional<Trajectory>& groundtruth;
+  const System& system;
+  const RunResult& result;
+  size_t earlier_sessions = 0;  // of the map that the run began with
+};
+
+// Writes the results of a run to its output folder, and its map, recording and report where they
+// are asked for. Prints the results, and why the run or a file failed. Returns the exit code.
+int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live);
+
+}  // namespace hullslam

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+namespace hullslam {
+
+// The tools, each in the file of this folder that has its name. Each parses its command line, in
+// which argv[0] is the name for --help, and returns the exit code. Throws InputError for bad usage
+// or input.
+int RunCheckMasks(int argc, char** argv);
+int RunConvertVocabulary(int argc, char** argv);
+int RunEvaluate(int argc, char** argv);
+int RunExport(int argc, char** argv);
+int RunMapObjects(int argc, char** argv);
+int RunQueryObjects(int argc, char** argv);
+int RunRelocalise(int argc, char** argv);
+int RunTrainVocabulary(int argc, char** argv);
+int RunView(int argc, char** argv);
+
+// A command of the program hullslam.
+struct Command {
+  const char* wish;     // the heading in `hullslam --help`: why a user needs it
+  const char* name;     // "check-masks"
+  const char* meaning;  // one line for --help
+  // The name under which the command is a program of its own, "check_masks". Null if there is none:
+  // only tools that were programs before they were commands have one.
+  const char* program;
+  // Null if the program is a file of its own in the folder of hullslam, because it needs libraries
+  // that the other tools do not need. Then the command starts this program.
+  int (*run)(int argc, char** argv);
+};
+
+// In the order of --help.
+std::span<const Command> Commands();
+
+}  // namespace hullslam
