@@ -38,6 +38,7 @@
 #include "run/vocabularies.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -64,9 +65,9 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
   if (failure) {
     return fmt::format("{}: {}", ToString(state), ToString(*failure));
   }
-  return fmt::format("{}  {} keyframes  {} landmarks{}", ToString(state),
-                     map != nullptr ? map->keyframes().size() : 0,
-                     map != nullptr ? map->landmarks().size() : 0,
+  return fmt::format("{}  {}  {}{}", ToString(state),
+                     Counted(map != nullptr ? map->keyframes().size() : 0, "keyframe"),
+                     Counted(map != nullptr ? map->landmarks().size() : 0, "landmark"),
                      map != nullptr ? DescribeIslands(*map) : "");
 }
 

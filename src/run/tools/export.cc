@@ -25,6 +25,7 @@
 #include "run/export_input.h"
 #include "run/messages.h"
 #include "run/program.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -72,7 +73,8 @@ std::string WriteColmap(const ExportArguments& arguments, ExportInput& input) {
     folder.Write(file);
   }
   folder.Commit();
-  return fmt::format("{} images, {} points with tracks", model.images.size(), model.points.size());
+  return fmt::format("{}, {} with tracks", Counted(model.images.size(), "image"),
+                     Counted(model.points.size(), "point"));
 }
 
 std::string WriteNerfstudio(const ExportArguments& arguments, ExportInput& input) {
@@ -86,14 +88,16 @@ std::string WriteNerfstudio(const ExportArguments& arguments, ExportInput& input
   folder.Write({kPointsFile, FormatPointsPly(input.model.points)});
   folder.Write({"transforms.json", FormatTransforms(view.camera(), frames, kPointsFile)});
   folder.Commit();
-  return fmt::format("{} images{}{}, {} points", frames.size(),
-                     frames.front().depth.empty() ? "" : ", depths",
-                     frames.front().mask.empty() ? "" : ", masks", input.model.points.size());
+  return fmt::format(
+      "{}{}{}, {}", Counted(frames.size(), "image"), frames.front().depth.empty() ? "" : ", depths",
+      frames.front().mask.empty() ? "" : ", masks", Counted(input.model.points.size(), "point"));
 }
 
 std::string DescribeScene(const ExportModel& model) {
-  return fmt::format("{} poses, {} keyframes, {} points, {} objects", model.trajectory.size(),
-                     model.keyframes.size(), model.points.size(), model.scene.objects.size());
+  return fmt::format("{}, {}, {}, {}", Counted(model.trajectory.size(), "pose"),
+                     Counted(model.keyframes.size(), "keyframe"),
+                     Counted(model.points.size(), "point"),
+                     Counted(model.scene.objects.size(), "object"));
 }
 
 std::string WriteGlb(const ExportArguments& arguments, ExportInput& input) {
@@ -115,18 +119,18 @@ std::string WritePly(const ExportArguments& arguments, ExportInput& input) {
 std::string WriteG2o(const ExportArguments& arguments, ExportInput& input) {
   const MapOfRun& map = *input.map;
   WriteFileAtomically(arguments.output, FormatG2o(map.map, map.located, map.sensor));
-  return fmt::format("{} keyframes, {} landmarks", map.map.keyframes().size(),
-                     map.located.positions.size());
+  return fmt::format("{}, {}", Counted(map.map.keyframes().size(), "keyframe"),
+                     Counted(map.located.positions.size(), "landmark"));
 }
 
 std::string WriteKitti(const ExportArguments& arguments, ExportInput& input) {
   WriteFileAtomically(arguments.output, FormatKittiPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
+  return Counted(input.model.trajectory.size(), "pose");
 }
 
 std::string WriteEuroc(const ExportArguments& arguments, ExportInput& input) {
   WriteFileAtomically(arguments.output, FormatEurocPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
+  return Counted(input.model.trajectory.size(), "pose");
 }
 
 constexpr std::array<ExportFormat, 7> kFormats = {{
