@@ -227,7 +227,7 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
-  WarnOfMisplacedMasks(sequence, options.camera, masks);
+  WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
 }
