@@ -191,7 +191,7 @@ AlignmentKind ReadAlignment(const std::filesystem::path& path) {
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {
   std::map<std::string, TimeStatistics> stages;
   for (const auto& [stage, samples] : times.samples()) {
-    stages[stage] = Summarize(samples);
+    stages[stage] = Summarize(times, stage);
   }
   return stages;
 }
