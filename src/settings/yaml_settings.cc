@@ -85,16 +85,32 @@ std::string WithoutComments(std::string_view text) {
   return kept;
 }
 
+constexpr std::string_view kHead = "%YAML:1.0\n";
+
+// Whether a line names a camera, as those of all settings files do.
+bool NamesCamera(std::string_view text) {
+  return text.starts_with("Camera") || text.find("\nCamera") != std::string_view::npos;
+}
+
+// The text of a file without comments. OpenCV needs the line %YAML as the first one. People write
+// comments before it or leave it out; then it is not in the text, which keeps its lines.
 std::string ReadYamlText(const fs::path& file) {
   constexpr size_t kLargest = 1'000'000;
-  const std::string text = ReadText(file, kLargest);
-  if (!text.starts_with("%YAML")) {
-    throw InputError(Origin(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
-  }
-  if (text.find('\0') != std::string::npos) {
+  const std::string whole = ReadText(file, kLargest);
+  if (whole.find('\0') != std::string::npos) {
     throw InputError(file.string() + ": is not a text file with settings");
   }
-  return WithoutComments(text);
+  std::string text = WithoutComments(whole);
+  if (text.starts_with("%YAML")) {
+    return text;
+  }
+  const size_t begin = std::min(text.find_first_not_of("\r\n\t "), text.size());
+  if (text.compare(begin, 5, "%YAML") == 0) {
+    text.erase(begin, std::min(text.find('\n', begin), text.size()) - begin);
+  } else if (!NamesCamera(text)) {
+    throw InputError(Origin(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
+  }
+  return text;
 }
 
 // The text of a single value; see WrittenSetting.
@@ -164,11 +180,14 @@ std::vector<WrittenSetting> CollectSettings(const fs::path& file, const std::str
 
 std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
   const std::string text = ReadYamlText(file);
-  const cv::FileStorage storage = ParseYaml(file, text);
+  const bool has_head = text.starts_with("%YAML");
+  const int added_lines = has_head ? 0 : 1;
+  const cv::FileStorage storage =
+      ParseYaml(file, has_head ? text : std::string(kHead) + text, added_lines);
   try {
     return CollectSettings(file, text, storage.root());
   } catch (const cv::Exception& error) {
-    FailParsing(file, error);
+    FailParsing(file, error, added_lines);
   }
 }
 
