@@ -406,11 +406,10 @@ TEST_F(Settings, LongKeysAndValuesAreCutInMessages) {
 
 TEST_F(Settings, FilesThatAreNotYamlAreRefused) {
   ExpectError("", {"camera.yaml:1: ", "%YAML:1.0"});
-  ExpectError("Camera.fx: 500\n", {"camera.yaml:1: ", "%YAML:1.0"});
   ExpectError(std::string("\x7f"
                           "ELF\x02\0\0",
                           7),
-              {"camera.yaml:1: ", "%YAML:1.0"});
+              {"camera.yaml", "not a text file"});
   ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "not a text file"});
   ExpectError("%YAML:1.0\n", {"camera.yaml", "has no settings"});
   ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "has no settings"});

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "support/file_size_limit.h"
+
 namespace hullslam {
 namespace {
 
@@ -84,6 +86,20 @@ TEST(MappedMemory, PagesThatWereGivenBackKeepTheirContent) {
   for (size_t i = 0; i < kBytes; ++i) {
     ASSERT_EQ(bytes[i], i % 251);
   }
+}
+
+TEST(MappedMemory, AFullDiskIsNoReasonToEndARun) {
+  MappedMemory memory;
+  memory.Grow(1000);
+  ASSERT_TRUE(memory.has_file());
+  static_cast<char*>(memory.data())[999] = 'x';
+  const FileSizeLimit limit(10'000);
+  memory.Grow(1'000'000);
+  EXPECT_FALSE(memory.has_file());
+  EXPECT_EQ(static_cast<char*>(memory.data())[999], 'x');
+  static_cast<char*>(memory.data())[999'999] = 'y';
+  memory.Grow(2'000'000);
+  EXPECT_EQ(static_cast<char*>(memory.data())[999'999], 'y');
 }
 
 // A folder for temporary files that is not there is no reason to end a run.
