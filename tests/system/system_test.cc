@@ -421,24 +421,28 @@ TEST(System, OnlyTheLastFramesAreKeptForFinish) {
 
 // The frames themselves and the times of their stages are kept in bounded memory too.
 TEST(System, AFrameOfALongRunTakesNoMemory) {
-  System system(Wall::Options(), PipelineKind::kSequential);
-  ASSERT_EQ(TrackFrame(system, 0).state, TrackingState::kTracked);
-  const auto heap_after = [&](size_t frames) {
-    for (size_t i = system.frames().size(); i < frames; ++i) {
-      BuiltFrame built;
-      built.frame = std::make_unique<Frame>();
-      built.frame->timestamp = Time(static_cast<int>(i));
-      system.Track(std::move(built));
-    }
-    const struct mallinfo2 info = mallinfo2();
-    return static_cast<double>(info.uordblks + info.hblkhd);
-  };
-  const double before = heap_after(12000);
-  const double grown = heap_after(30000) - before;
-  EXPECT_LT(grown / 18000.0, 8.0) << "bytes a frame";
-  ASSERT_EQ(system.frames().size(), 30000u);
-  EXPECT_EQ(system.frames()[0].state, TrackingState::kTracked);
-  EXPECT_EQ(system.frames()[29999].timestamp, Time(29999));
+  for (const PipelineKind kind : {PipelineKind::kSequential, PipelineKind::kThreaded}) {
+    System system(Wall::Options(), kind);
+    ASSERT_EQ(TrackFrame(system, 0).state, TrackingState::kTracked);
+    const auto heap_after = [&](size_t frames) {
+      for (size_t i = system.frames().size(); i < frames; ++i) {
+        BuiltFrame built;
+        built.frame = std::make_unique<Frame>();
+        built.frame->timestamp = Time(static_cast<int>(i));
+        system.Track(std::move(built));
+      }
+      const struct mallinfo2 info = mallinfo2();
+      return static_cast<double>(info.uordblks + info.hblkhd);
+    };
+    const double before = heap_after(12000);
+    const double grown = heap_after(30000) - before;
+    EXPECT_LT(grown / 18000.0, 8.0) << "bytes a frame";
+    ASSERT_EQ(system.frames().size(), 30000u);
+    EXPECT_EQ(system.frames()[0].state, TrackingState::kTracked);
+    EXPECT_EQ(system.frames()[29999].timestamp, Time(29999));
+    system.Finish();
+    EXPECT_EQ(system.trajectory().size(), 1u);
+  }
 }
 
 // A square in front of the wall, so that objects are part of the comparison.
