@@ -45,23 +45,14 @@ size_t HeapBytes() {
   return info.uordblks + info.hblkhd;
 }
 
-// The samples of a stage since `before`.
-std::vector<double> Since(const StageTimes& before, const StageTimes& now, std::string_view stage) {
-  const auto all = now.samples().find(stage);
-  if (all == now.samples().end()) {
-    return {};
-  }
-  const auto old = before.samples().find(stage);
-  const size_t skipped = old != before.samples().end() ? old->second.size() : 0;
-  return {all->second.begin() + static_cast<std::ptrdiff_t>(skipped), all->second.end()};
+// The time of a stage since `before`, ms.
+double SumSince(const StageTimes& before, const StageTimes& now, std::string_view stage) {
+  return now.Total(stage).sum - before.Total(stage).sum;
 }
 
-double Sum(const std::vector<double>& samples) {
-  double sum = 0.0;
-  for (const double sample : samples) {
-    sum += sample;
-  }
-  return sum;
+double MeanSince(const StageTimes& before, const StageTimes& now, std::string_view stage) {
+  const size_t count = now.Total(stage).count - before.Total(stage).count;
+  return SumSince(before, now, stage) / static_cast<double>(std::max<size_t>(1, count));
 }
 
 // The processor times of frames in a window, ms.
@@ -85,7 +76,7 @@ void PrintLine(size_t frames, const Map& map, const FrameTimes& times, const Sta
                const StageTimes& now, size_t heap) {
   double others = 0.0;
   for (const char* stage : kOtherStages) {
-    others += Sum(Since(before, now, stage));
+    others += SumSince(before, now, stage);
   }
   size_t bytes = 0;
   for (const auto& [part, of_part] : KeyframeBytes(map)) {
@@ -95,7 +86,7 @@ void PrintLine(size_t frames, const Map& map, const FrameTimes& times, const Sta
              frames, map.keyframes().size(), map.landmarks().size(), map.objects().size(),
              Summarize(times.tracked).median, PerKeyframe(times),
              others / static_cast<double>(std::max<size_t>(1, times.inserted.size())),
-             1e3 * Summarize(Since(before, now, "map_snapshot")).mean,
+             1e3 * MeanSince(before, now, "map_snapshot"),
              1e-3 * static_cast<double>(bytes) / static_cast<double>(map.keyframes().size()),
              1e-6 * static_cast<double>(heap));
   std::fflush(stdout);

@@ -3,7 +3,7 @@
 import { bars, facts, sizeText } from './card.js';
 import { colourOfClass } from './colours.js';
 import { strip, stripTitle } from './pictures.js';
-import { html, isNumber, length, number, seconds, whole, words } from './text.js';
+import { html, isNumber, length, milliseconds, number, seconds, whole, words } from './text.js';
 
 function tile(name, value, unit = '', kind = '') {
   return html('div', { class: `tile ${kind}` }, html('b', {}, value,
@@ -90,7 +90,7 @@ function timing(summary) {
     + ` takes ${number(at(summary, 'timing', 'track_ms', 'median'), 1)} ms (median), `
     + `${number(at(summary, 'timing', 'track_ms', 'p95'), 1)} ms (95 %). Medians of the stages, on a logarithmic scale:`),
   bars(stages.map(([name, value], i) => ({ name: words(name), value: lengthOf(logs[i]),
-    text: `${number(value.median, 1)} ms` })), 'var(--accent)')];
+    text: milliseconds(value.median) })), 'var(--accent)')];
 }
 
 function losses(store) {

@@ -37,6 +37,12 @@ export function number(value, digits = 2) {
   return isNumber(value) ? value.toFixed(digits) : '–';
 }
 
+// Short times have two digits that say something, such as 0.034 ms.
+export function milliseconds(value) {
+  return isNumber(value) && value > 0 && value < 0.1 ? `${Number(value.toPrecision(2))} ms`
+    : `${number(value, 1)} ms`;
+}
+
 export function whole(value) {
   return isNumber(value) ? String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f') : '–';
 }

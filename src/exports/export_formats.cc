@@ -14,6 +14,7 @@
 #include "exports/pose_files.h"
 #include "exports/scene_ply.h"
 #include "files/atomic_file.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -34,7 +35,8 @@ std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
     folder.Write(file);
   }
   folder.Commit();
-  return fmt::format("{} images, {} points with tracks", model.images.size(), model.points.size());
+  return fmt::format("{}, {} with tracks", Counted(model.images.size(), "image"),
+                     Counted(model.points.size(), "point"));
 }
 
 std::string WriteNerfstudio(const ExportOptions& options, ExportInput& input) {
@@ -48,14 +50,16 @@ std::string WriteNerfstudio(const ExportOptions& options, ExportInput& input) {
   folder.Write({kPointsFile, FormatPointsPly(input.model.points)});
   folder.Write({"transforms.json", FormatTransforms(view.camera(), frames, kPointsFile)});
   folder.Commit();
-  return fmt::format("{} images{}{}, {} points", frames.size(),
-                     frames.front().depth.empty() ? "" : ", depths",
-                     frames.front().mask.empty() ? "" : ", masks", input.model.points.size());
+  return fmt::format(
+      "{}{}{}, {}", Counted(frames.size(), "image"), frames.front().depth.empty() ? "" : ", depths",
+      frames.front().mask.empty() ? "" : ", masks", Counted(input.model.points.size(), "point"));
 }
 
 std::string DescribeScene(const ExportModel& model) {
-  return fmt::format("{} poses, {} keyframes, {} points, {} objects", model.trajectory.size(),
-                     model.keyframes.size(), model.points.size(), model.scene.objects.size());
+  return fmt::format("{}, {}, {}, {}", Counted(model.trajectory.size(), "pose"),
+                     Counted(model.keyframes.size(), "keyframe"),
+                     Counted(model.points.size(), "point"),
+                     Counted(model.scene.objects.size(), "object"));
 }
 
 std::string WriteGlb(const ExportOptions& options, ExportInput& input) {
@@ -77,18 +81,18 @@ std::string WritePly(const ExportOptions& options, ExportInput& input) {
 std::string WriteG2o(const ExportOptions& options, ExportInput& input) {
   const MapOfRun& map = *input.map;
   WriteFileAtomically(options.output, FormatG2o(map.map, map.located, map.sensor));
-  return fmt::format("{} keyframes, {} landmarks", map.map.keyframes().size(),
-                     map.located.positions.size());
+  return fmt::format("{}, {}", Counted(map.map.keyframes().size(), "keyframe"),
+                     Counted(map.located.positions.size(), "landmark"));
 }
 
 std::string WriteKitti(const ExportOptions& options, ExportInput& input) {
   WriteFileAtomically(options.output, FormatKittiPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
+  return Counted(input.model.trajectory.size(), "pose");
 }
 
 std::string WriteEuroc(const ExportOptions& options, ExportInput& input) {
   WriteFileAtomically(options.output, FormatEurocPoses(input.model.trajectory));
-  return fmt::format("{} poses", input.model.trajectory.size());
+  return Counted(input.model.trajectory.size(), "pose");
 }
 
 constexpr std::array<ExportFormat, 7> kFormats = {{

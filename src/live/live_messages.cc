@@ -142,7 +142,8 @@ std::string LiveMessages::Frame(const LiveFrame* frame, const LiveControls& cont
   return parts.Format();
 }
 
-std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool is_limited) {
+std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool is_limited,
+                                                   bool is_at_rest) {
   Parts parts;
   const LiveMapChange change = map_.Follow(*state.map, is_limited);
   if (!change.landmarks.empty()) {
@@ -169,14 +170,14 @@ std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool 
     model.edges = map_.edges();
     parts.set["edges"] = ViewParts(model, run_.start)["edges"];
   }
-  FollowPath(state, parts);
+  FollowPath(state, is_at_rest, parts);
   FollowCounts(state, parts);
   std::string text = parts.Format();
   return text.empty() ? std::nullopt : std::optional(std::move(text));
 }
 
 // New poses are added. After a correction of the map, all poses are new.
-void LiveMessages::FollowPath(const LiveState& state, Parts& parts) {
+void LiveMessages::FollowPath(const LiveState& state, bool is_at_rest, Parts& parts) {
   const Trajectory path = ComposeTrajectory(*state.map, state.path);
   ViewModel model;
   const bool is_longer = state.path_thinnings == path_thinnings_ &&
@@ -194,15 +195,17 @@ void LiveMessages::FollowPath(const LiveState& state, Parts& parts) {
   path_ = path;
   path_thinnings_ = state.path_thinnings;
   corrections_ = state.map->correction_count();
-  Align(parts);
+  Align(is_at_rest, parts);
 }
 
-// The ground truth is aligned again whenever the path has become a good deal longer.
-void LiveMessages::Align(Parts& parts) {
+// The ground truth is aligned again whenever the path has become a good deal longer, and once it
+// grows no more.
+void LiveMessages::Align(bool is_at_rest, Parts& parts) {
   constexpr double kGrowth = 1.05;
   constexpr size_t kLeastPoses = 10;
-  if (static_cast<double>(path_.size()) <
-      kGrowth * static_cast<double>(aligned_poses_) + kLeastPoses) {
+  const bool is_longer = static_cast<double>(path_.size()) >=
+                         kGrowth * static_cast<double>(aligned_poses_) + kLeastPoses;
+  if (!is_longer && (!is_at_rest || path_.size() == aligned_poses_)) {
     return;
   }
   aligned_poses_ = path_.size();

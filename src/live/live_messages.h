@@ -48,9 +48,11 @@ class LiveMessages {
   // The state of the run, and the current frame with its image if there is one.
   std::string Frame(const LiveFrame* frame, const LiveControls& controls, double rate);
   // Follows the map and the path. Returns what has changed since the last call; nothing if there is
-  // no difference. Without `is_limited`, all changes are made at once.
-  // The map of the state must not be null.
-  std::optional<std::string> MapChange(const LiveState& state, bool is_limited);
+  // no difference. Without `is_limited`, all changes are made at once. If the run `is_at_rest`, in
+  // a pause or at its end, the errors are those of the whole path; else they follow it with some
+  // delay. The map of the state must not be null.
+  std::optional<std::string> MapChange(const LiveState& state, bool is_limited,
+                                       bool is_at_rest = false);
   // All that the calls of MapChange() have given so far.
   std::string Whole(const LiveControls& controls) const;
   // The content of summary.json, once the run has it.
@@ -66,9 +68,9 @@ class LiveMessages {
     std::string Format() const;  // empty if there are none
   };
 
-  void FollowPath(const LiveState& state, Parts& parts);
+  void FollowPath(const LiveState& state, bool is_at_rest, Parts& parts);
   void FollowCounts(const LiveState& state, Parts& parts);
-  void Align(Parts& parts);
+  void Align(bool is_at_rest, Parts& parts);
   ViewModel ModelOfRun() const;
   nlohmann::json SummaryPart() const;
 

@@ -135,7 +135,7 @@ class LiveView::Engine {
     LiveState state = inbox_.state();
     state.map = std::move(map);
     if (state.map != nullptr) {
-      messages_.MapChange(state, false);
+      messages_.MapChange(state, false, true);
     }
     messages_.Frame(nullptr, Controls(), inbox_.rate());
     const auto whole = std::make_shared<const std::string>(messages_.Whole(Controls()));
@@ -226,7 +226,7 @@ class LiveView::Engine {
     if (state.map != nullptr) {
       // If all browsers wait for the whole map, it need not grow by small changes.
       const bool is_limited = !is_whole_needed || hub_.reader_count() > 1;
-      if (const auto change = messages_.MapChange(state, is_limited)) {
+      if (const auto change = messages_.MapChange(state, is_limited, gate_.IsPaused())) {
         hub_.GiveMapChange(std::make_shared<const std::string>(*change));
       }
     }

@@ -5,7 +5,11 @@ namespace hullslam {
 
 void TrackHistory::Add(const TrackedFrame& frame) {
   const bool is_kept = count_++ % stride_ == 0;
-  if (!is_kept || frame.state != TrackingState::kTracked) {
+  if (frame.state != TrackingState::kTracked) {
+    return;
+  }
+  newest_ = frame;
+  if (!is_kept) {
     return;
   }
   if (frames_.size() >= most_) {
@@ -18,6 +22,14 @@ void TrackHistory::Add(const TrackedFrame& frame) {
     ++thinnings_;
   }
   frames_.push_back(frame);
+}
+
+std::vector<TrackedFrame> TrackHistory::frames() const {
+  std::vector<TrackedFrame> frames = frames_;
+  if (newest_ && (frames.empty() || newest_->timestamp > frames.back().timestamp)) {
+    frames.push_back(*newest_);
+  }
+  return frames;
 }
 
 }  // namespace hullslam

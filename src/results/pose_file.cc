@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -78,21 +79,19 @@ Layout LayoutOf(const TextRow& row) {
 }
 
 Rigid3 ReadMatrix(const TextRow& row) {
-  Rigid3 pose;
-  Eigen::Matrix3d rotation;
+  Eigen::Matrix<double, 3, 4> matrix;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      rotation(i, j) =
-          row.Number(static_cast<size_t>(4 * i + j), "an element of the rotation", 2.0);
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      matrix(i, j) = row.Number(static_cast<size_t>(4 * i + j),
+                                j == 3 ? "a coordinate" : "an element of the rotation",
+                                j == 3 ? kMostMetres : 2.0);
     }
-    pose.translation(i) = row.Number(static_cast<size_t>(4 * i + 3), "a coordinate", kMostMetres);
   }
-  constexpr double kTolerance = 1e-2;  // files round their numbers to 6 decimals or fewer
-  if (!(rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance)) {
+  const std::optional<Rigid3> pose = PoseOfMatrix(matrix);
+  if (!pose) {
     row.Fail("the numbers are no matrix of a pose, expected a rotation and a translation by rows");
   }
-  pose.rotation = Eigen::Quaterniond(rotation).normalized();
-  return pose;
+  return *pose;
 }
 
 Rigid3 ReadPose(const TextRow& row, const Layout& layout) {
@@ -179,7 +178,7 @@ class Reader {
 
   double StampOf(const TextRow& row) {
     if (layout_->is_matrix) {
-      return static_cast<double>(file_.poses.size());
+      return static_cast<double>(rows_ - 1);
     }
     if (row.columns.size() <= layout_->first) {
       row.Fail("has no time stamp");
@@ -225,6 +224,16 @@ class Reader {
 };
 
 }  // namespace
+
+std::optional<Rigid3> PoseOfMatrix(const Eigen::Matrix<double, 3, 4>& matrix) {
+  constexpr double kTolerance = 1e-2;  // files round their numbers to 6 decimals or fewer
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  if (!(rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance) ||
+      rotation.determinant() < 0.0) {
+    return std::nullopt;
+  }
+  return Rigid3{Eigen::Quaterniond(rotation).normalized(), matrix.col(3)};
+}
 
 PoseFile ReadPoseFile(const fs::path& path) {
   PoseFile file = Reader(path).Read();

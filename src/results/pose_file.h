@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +15,7 @@ namespace hullslam {
 // A trajectory that another program wrote.
 struct PoseFile {
   Trajectory poses;
-  bool has_stamps = true;          // false: the stamps are the indices of the poses
+  bool has_stamps = true;          // false: the stamps are the indices of the rows
   std::vector<std::string> notes;  // what was converted or skipped
 };
 
@@ -29,6 +31,10 @@ struct PoseFile {
 // Throws InputError if most rows are malformed, or if most stamps repeat the one before with
 // another pose, as stamps do that were rounded to seconds.
 PoseFile ReadPoseFile(const std::filesystem::path& path);
+
+// The pose with this rotation and translation; absent if the first three columns are no rotation.
+// They may be rounded to 2 decimals.
+std::optional<Rigid3> PoseOfMatrix(const Eigen::Matrix<double, 3, 4>& matrix);
 
 // Gives the poses of a file without stamps those of as many frames. Throws InputError for another
 // number of frames.

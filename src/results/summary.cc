@@ -180,7 +180,7 @@ std::string FormatSummary(const RunSummary& summary) {
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {
   std::map<std::string, TimeStatistics> stages;
   for (const auto& [stage, samples] : times.samples()) {
-    stages[stage] = Summarize(samples);
+    stages[stage] = Summarize(times, stage);
   }
   return stages;
 }

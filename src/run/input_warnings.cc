@@ -152,7 +152,7 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
 }
 
 void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& camera,
-                          const SequenceMasks& masks) {
+                          const std::function<std::vector<InstanceMask>(size_t)>& read) {
   constexpr size_t kFrames = 7;
   constexpr size_t kMostStep = 30;  // so that no video is decoded to its end
   constexpr size_t kLeastPoints = 2000;
@@ -164,11 +164,11 @@ void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& ca
   const size_t step = std::clamp<size_t>(sequence.frames.size() / kFrames, 1, kMostStep);
   for (size_t i = 0; i < std::min(sequence.frames.size(), kFrames * step); i += step) {
     try {
-      const std::vector<InstanceMask> found = masks.Read(i);
+      const std::vector<InstanceMask> found = read(i);
       if (!found.empty()) {
         registration.Add(sequence.load(sequence.frames[i], camera).grey, found);
       }
-    } catch (const InputError&) {  // the run will report this image
+    } catch (const InputError&) {  // the program will report it
       continue;
     }
   }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <vector>
 
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
@@ -35,8 +38,9 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
 // Warns if the outlines of masks do not run along borders in the images (MaskRegistration): they
 // may be masks of the images as EXIF data turn them. Uses seven images of the beginning. Prints
 // nothing if there are too few contours.
+// `read` gives the masks of the frame with an index.
 void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& camera,
-                          const SequenceMasks& masks);
+                          const std::function<std::vector<InstanceMask>(size_t)>& read);
 // Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 

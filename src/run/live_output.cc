@@ -18,6 +18,7 @@
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "system/make_sensor.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -51,7 +52,8 @@ std::string SaveLiveMap(const fs::path& file, const MapSettings& settings, const
   } catch (const InputError& error) {
     return fmt::format("The map was not saved: {}", error.what());
   }
-  return fmt::format("The map of {} keyframes is in {}", map.keyframes().size(), file.string());
+  return fmt::format("The map of {} is in {}", Counted(map.keyframes().size(), "keyframe"),
+                     file.string());
 }
 
 LiveRun DescribeRun(const RunArguments& arguments, const SystemOptions& options,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "util/counted.h"
 
 namespace hullslam {
 
@@ -65,9 +66,8 @@ std::string SequenceMasks::Describe() const {
                                                       counts_.missing),
                    counts_.without_area == 0
                        ? std::string()
-                       : fmt::format("; {} instance(s) are left out, because they have no outline "
-                                     "of 1 px^2 or more",
-                                     counts_.without_area));
+                       : fmt::format("; {} left out, because of no outline of 1 px^2 or more",
+                                     Counted(counts_.without_area, "instance")));
 }
 
 }  // namespace hullslam

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "eval/object_metrics.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -87,11 +88,11 @@ std::string DescribeChanges(const std::vector<ChangedObject>& changes) {
 
 std::string DescribeObjects(const ObjectsSummary& summary, const char* unit) {
   return fmt::format(
-      "{} objects, {} not mapped; means: SIoU {} with hulls, {} with masks, tangent distance {} "
-      "px, MTD {} {}^2 (of {} observations)",
-      summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
+      "{}, {} not mapped; means: SIoU {} with hulls, {} with masks, tangent distance {} "
+      "px, MTD {} {}^2 (of {})",
+      Counted(summary.count, "object"), summary.candidates, FormatFigure(summary.siou_mean, 3),
       FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
-      FormatFigure(summary.mtd_mean_m2, 5), unit, summary.observations);
+      FormatFigure(summary.mtd_mean_m2, 5), unit, Counted(summary.observations, "observation"));
 }
 
 }  // namespace hullslam

@@ -2,6 +2,8 @@
 #include "run/run_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <system_error>
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
@@ -19,6 +21,46 @@ namespace {
 std::string LongForm(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? "VOCABULARY SETTINGS SEQUENCE"
                                           : "VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS";
+}
+
+// Places in the long form.
+constexpr size_t kVocabularyPlace = 0;
+constexpr size_t kSettingsPlace = 1;
+constexpr size_t kSequencePlace = 2;
+
+bool IsSettingsFile(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  std::error_code error;
+  return (extension == ".yaml" || extension == ".yml") &&
+         std::filesystem::is_regular_file(path, error);
+}
+
+bool IsFolder(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
+// Refuses arguments of the long form in another order. Settings files and folders may also be
+// something else, so they are refused only if there is none at their own place.
+void CheckOrder(const std::vector<std::string>& positional, const std::string& form) {
+  const bool has_settings = IsSettingsFile(positional[kSettingsPlace]);
+  const bool has_folder = IsFolder(positional[kSequencePlace]);
+  const auto refuse = [&](const std::string& argument, const char* kind) {
+    throw InputError(argument + " is " + kind + "; the order is " + form);
+  };
+  for (size_t place = kVocabularyPlace + 1; place < positional.size(); ++place) {
+    if (IsVocabularyFile(positional[place])) {
+      refuse(positional[place], "a vocabulary");
+    }
+  }
+  for (const std::string& argument : positional) {
+    if (!has_settings && IsSettingsFile(argument)) {
+      refuse(argument, "a settings file");
+    }
+    if (!has_folder && IsFolder(argument)) {
+      refuse(argument, "a folder");
+    }
+  }
 }
 
 void AddGroundtruth(CLI::App& app, const DatasetHelp& help, RunArguments& arguments) {
@@ -101,13 +143,10 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
                      " positional arguments, expected SEQUENCE or " + LongForm(arguments.sensor) +
                      " (see --help)");
   }
-  if (IsVocabularyFile(positional[1])) {
-    throw InputError(positional[1] + " is a vocabulary; the order is " +
-                     LongForm(arguments.sensor));
-  }
-  arguments.vocabulary = positional[0];
-  arguments.settings = positional[1];
-  arguments.sequence = positional[2];
+  CheckOrder(positional, LongForm(arguments.sensor));
+  arguments.vocabulary = positional[kVocabularyPlace];
+  arguments.settings = positional[kSettingsPlace];
+  arguments.sequence = positional[kSequencePlace];
   if (has_associations) {
     arguments.associations = positional[3];
   }

@@ -12,6 +12,7 @@
 #include "hullslam/map/initialisation_failure.h"
 #include "run/messages.h"
 #include "run/object_outputs.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -44,8 +45,9 @@ void PrintIslands(const IslandsSummary& islands, bool are_kept) {
         islands.joined, left, are_kept ? "written on their own" : "removed");
   for (const IslandSummary& island : islands.at_end) {
     if (!island.is_main && island.first_timestamp && island.last_timestamp) {
-      Print("  part {}: {} frames from {:.3f} to {:.3f} s, {} keyframes{}\n", island.number,
-            island.frames, *island.first_timestamp, *island.last_timestamp, island.keyframes,
+      Print("  part {}: {} from {:.3f} to {:.3f} s, {}{}\n", island.number,
+            Counted(island.frames, "frame"), *island.first_timestamp, *island.last_timestamp,
+            Counted(island.keyframes, "keyframe"),
             island.ate_rmse_m ? fmt::format(", ATE RMSE {:.4f} m", *island.ate_rmse_m) : "");
     }
   }
@@ -108,12 +110,12 @@ void PrintUnsure(std::span<const UnsureStretch> unsure) {
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
                  const ObjectReport& objects) {
   const TrajectorySummary& trajectory = summary.trajectory;
-  Print("{} frames: {} tracked, {} lost, {} skipped", trajectory.frames, trajectory.tracked,
-        trajectory.lost, trajectory.skipped);
+  Print("{}: {} tracked, {} lost, {} skipped", Counted(trajectory.frames, "frame"),
+        trajectory.tracked, trajectory.lost, trajectory.skipped);
   if (!summary.initialisation) {  // RGB-D, or a loaded map
     Print("{}\n", arguments.sensor == SensorKind::kMonocular
                       ? std::string()
-                      : fmt::format("; {} images without depth", trajectory.unpaired));
+                      : fmt::format("; {} without depth", Counted(trajectory.unpaired, "image")));
   } else if (summary.initialisation->seconds) {
     Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
   } else {
@@ -132,7 +134,8 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{} keyframes, {} landmarks{}{}\n", summary.map.keyframes, summary.map.landmarks,
+  Print("{}, {}{}{}\n", Counted(summary.map.keyframes, "keyframe"),
+        Counted(summary.map.landmarks, "landmark"),
         summary.map.landmarks_at_infinity > 0
             ? fmt::format(" ({} of them as good as infinitely far away)",
                           summary.map.landmarks_at_infinity)
@@ -170,7 +173,8 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
                        arguments.load_map.string(), given);
   }
   if (summary.initialisation && !summary.initialisation->seconds) {
-    return fmt::format("no map could be made from {} frames: {}", summary.trajectory.frames,
+    return fmt::format("no map could be made from {}: {}",
+                       Counted(summary.trajectory.frames, "frame"),
                        DescribeFailures(*summary.initialisation));
   }
   const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);

@@ -27,6 +27,7 @@
 #include "run/progress.h"
 #include "run/summarize_run.h"
 #include "run/vocabularies.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -53,9 +54,9 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
   if (failure) {
     return fmt::format("{}: {}", ToString(state), ToString(*failure));
   }
-  return fmt::format("{}  {} keyframes  {} landmarks{}", ToString(state),
-                     map != nullptr ? map->keyframes().size() : 0,
-                     map != nullptr ? map->landmarks().size() : 0,
+  return fmt::format("{}  {}  {}{}", ToString(state),
+                     Counted(map != nullptr ? map->keyframes().size() : 0, "keyframe"),
+                     Counted(map != nullptr ? map->landmarks().size() : 0, "landmark"),
                      map != nullptr ? DescribeIslands(*map) : "");
 }
 
@@ -170,7 +171,7 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
-  WarnOfMisplacedMasks(sequence, options.camera, masks);
+  WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
 }

@@ -73,8 +73,9 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
 }
 
 size_t CountLost(const System& system) {
+  const std::span<const TrackedFrame> frames = system.frames();
   return static_cast<size_t>(std::count_if(
-      system.frames().begin(), system.frames().end(),
+      frames.begin(), frames.end(),
       [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
 }
 
@@ -165,8 +166,8 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
   summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
   summary.trajectory.coverage =
       static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
-  summary.trajectory.losses = FindLostStretches(system.frames(), result.notes);
-  summary.trajectory.unsure = FindUnsureStretches(system.frames(), result.notes);
+  summary.trajectory.losses = FindLostStretches(system.frames(), result.notes.all());
+  summary.trajectory.unsure = FindUnsureStretches(system.frames(), result.notes.all());
 
   summary.timing.stages_ms = SummarizeStages(system.times());
   summary.timing.track_ms = summary.timing.stages_ms["track"];

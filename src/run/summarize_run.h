@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <optional>
-#include <vector>
 
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/system.h"
+#include "hullslam/util/mapped_vector.h"
 #include "report/lost_frames.h"
 #include "results/summary.h"
 #include "run/load_settings.h"
@@ -22,7 +22,7 @@ struct RunResult {
   double seconds = 0.0;
   bool was_interrupted = false;
   InitialisationSummary initialisation;
-  std::vector<FrameNote> notes;  // one per frame of the system
+  MappedVector<FrameNote> notes;  // one per frame of the system
 };
 
 // What summary.json says of a finished run, but for its masks and objects. Errors are only known

@@ -48,9 +48,14 @@ constexpr std::array<RelationWords, 22> kRelationWords = {{
     {"near", AskedRelation::kNear},
     {"by", AskedRelation::kNear},
 }};
-constexpr std::array<const char*, 5> kArticles = {"the", "a", "an", "any", "some"};
+constexpr std::array<const char*, 7> kArticles = {"the", "a", "an", "any", "some", "my", "all"};
 constexpr std::array<const char*, 5> kAnyThing = {"thing", "things", "something", "anything",
                                                   "everything"};
+
+// How questions and requests begin. Longer ones come before those that they begin with.
+constexpr std::array<const char*, 13> kOpenings = {
+    "is there", "are there", "where is", "where are", "what is", "what are", "show me",
+    "show",     "find",      "which",    "what",      "is",      "are"};
 
 template <typename List>
 bool IsOneOf(const List& list, const std::string& word) {
@@ -66,10 +71,16 @@ class QuestionParser {
     if (words_.empty()) {
       throw InputError("the question has no word, expected such as \"cup on the book\"");
     }
-    AskedThing thing = ParseThing();
+    SkipOpening();
+    AskedThing thing;
+    if (IsAtRelation()) {
+      thing.text = "thing";
+    } else {
+      thing = ParseThing();
+    }
     AskedThing* described = &thing;  // what the next relation is about
     while (place_ < words_.size()) {
-      if (TakeOne("and")) {
+      if (TakeOne("and") || TakeOne("is") || TakeOne("are")) {
         continue;
       }
       if (TakeOne("that") || TakeOne("which")) {
@@ -97,6 +108,28 @@ class QuestionParser {
     const bool is_next =
         rest.size() >= phrase.size() && std::equal(phrase.begin(), phrase.end(), rest.begin());
     place_ += is_next ? phrase.size() : 0;
+    return is_next;
+  }
+
+  // Skips "is there" and the like, which say nothing of the thing, unless a class is named so.
+  void SkipOpening() {
+    if (MatchClass(Rest(), labels_).words > 0) {
+      return;
+    }
+    for (const char* const opening : kOpenings) {
+      if (TakePhrase(SplitWords(opening))) {
+        return;
+      }
+    }
+  }
+
+  // Whether the next words are a relation, as in "what is on the table".
+  bool IsAtRelation() {
+    const size_t begin = place_;
+    const bool is_next = std::any_of(
+        kRelationWords.begin(), kRelationWords.end(),
+        [&](const RelationWords& known) { return TakePhrase(SplitWords(known.words)); });
+    place_ = begin;
     return is_next;
   }
 
@@ -178,7 +211,7 @@ class QuestionParser {
         nearest = label;
       }
     }
-    const bool is_close = !nearest.empty() && EditDistance(word, nearest) <= 2;
+    const bool is_close = !nearest.empty() && IsMisspelt(word, nearest);
     throw InputError(fmt::format(
         "unknown word '{}', expected {}{}; classes: {}; other things: thing, object NUMBER, floor, "
         "surface; relations: {}",

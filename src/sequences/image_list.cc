@@ -66,7 +66,10 @@ fs::path ImageFile(const TextRow& row, size_t column, const fs::path& folder) {
     row.Fail(fmt::format("the name of the file has {} bytes, expected at most {}",
                          row.columns[column].size(), kLongest));
   }
-  return folder / row.columns[column];
+  // Programs on Windows write rgb\1.png.
+  std::string name(row.columns[column]);
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return folder / name;
 }
 
 bool AddFrame(const TextRow& row, FramePaths frame, ListedFrames& list) {

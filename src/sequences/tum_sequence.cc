@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -15,6 +14,7 @@
 #include "hullslam/util/stamp_pairing.h"
 #include "sequences/image_list.h"
 #include "sequences/named_images.h"
+#include "sequences/shared_folder.h"
 
 namespace hullslam {
 namespace {
@@ -23,40 +23,14 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxDifference = 0.02;  // s, as in TUM's associate.py
 
-// How a data set without lists names its images, which are all in one folder.
-struct SharedFolder {
-  const char* data_set;
-  const char* folder;  // in the folder of the sequence
-  const char* colour;  // a part of the names
-  const char* depth;
-};
-
-constexpr std::array<SharedFolder, 2> kSharedFolders = {
-    {{"7-Scenes", "", ".color.", ".depth."}, {"Replica", "results", "frame", "depth"}}};
-
-// The data set of a sequence in such a form; null if it has none.
-const SharedFolder* FindSharedFolder(const fs::path& folder) {
-  for (const SharedFolder& shared : kSharedFolders) {
-    std::error_code error;
-    bool has_colour = false;
-    bool has_depth = false;
-    for (fs::directory_iterator entry(folder / shared.folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-      const std::string name = entry->path().filename().string();
-      has_colour = has_colour || name.find(shared.colour) != std::string::npos;
-      has_depth = has_depth || name.find(shared.depth) != std::string::npos;
-      if (has_colour && has_depth) {
-        return &shared;
-      }
-    }
-  }
-  return nullptr;
+// Whether the images are where sequences of TUM have them.
+bool HasImageFolder(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "rgb.txt", error) || fs::is_directory(folder / "rgb", error);
 }
 
 bool HasColourImages(const fs::path& folder) {
-  std::error_code error;
-  return fs::exists(folder / "rgb.txt", error) || fs::is_directory(folder / "rgb", error) ||
-         FindSharedFolder(folder) != nullptr;
+  return HasImageFolder(folder) || FindSharedFolder(folder) != nullptr;
 }
 
 // The images of a list, as frames without depth.
@@ -220,6 +194,20 @@ ImageSequence ReadLists(const fs::path& folder, const TumSequenceOptions& option
   return sequence;
 }
 
+// groundtruth.txt, or the poses of a data set that is known by the names of its images.
+void AddGroundtruth(const fs::path& folder, const TumSequenceOptions& options,
+                    ImageSequence& sequence) {
+  std::error_code error;
+  const fs::path groundtruth = folder / "groundtruth.txt";
+  if (fs::exists(groundtruth, error)) {
+    sequence.groundtruth = groundtruth;
+  } else if (const SharedFolder* const shared = FindSharedFolder(folder);
+             shared != nullptr && options.associations.empty() && !HasImageFolder(folder)) {
+    sequence.converted_groundtruth = ReadSharedPoses(*shared, folder, sequence.frames,
+                                                     options.frames_per_second, sequence.warnings);
+  }
+}
+
 void DropMissingDepth(std::vector<FramePaths>& frames) {
   std::error_code error;
   for (FramePaths& frame : frames) {
@@ -251,11 +239,7 @@ ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& 
   } else {
     DropMissingDepth(sequence.frames);
   }
-  std::error_code error;
-  const fs::path groundtruth = folder / "groundtruth.txt";
-  if (fs::exists(groundtruth, error)) {
-    sequence.groundtruth = groundtruth;
-  }
+  AddGroundtruth(folder, options, sequence);
   return sequence;
 }
 

@@ -50,6 +50,23 @@ std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
   return text.substr(text.find('-') + 1);
 }
 
+// Refuses the numbers of the rational model of distortion by its name. Zeros mean that the lens has
+// no such distortion.
+bool IsOfRationalModel(const WrittenSetting& setting) {
+  constexpr std::array kKeys = {"Camera.k4", "Camera.k5", "Camera.k6"};
+  if (std::find(kKeys.begin(), kKeys.end(), setting.key) == kKeys.end()) {
+    return false;
+  }
+  double value = 0.0;
+  if (!ParseFinite(setting.text, value) || value != 0.0) {
+    throw InputError(
+        fmt::format("{}: {} is '{}', expected 0: it belongs to the rational model of distortion "
+                    "(rational_polynomial of ROS), which HullSLAM cannot use yet",
+                    setting.origin, setting.name, setting.text));
+  }
+  return true;
+}
+
 // The options of a run while they are being set.
 class SettingsInProgress {
  public:
@@ -101,6 +118,9 @@ void SettingsInProgress::ApplyFile(const fs::path& file) {
     if (!in_file.insert(setting.key).second) {
       throw InputError(
           fmt::format("{}: {} was given before under another name", setting.origin, setting.name));
+    }
+    if (IsOfRationalModel(setting)) {
+      continue;
     }
     std::string text = TextOf(setting, table_);
     if (setting.key == "Camera.fy") {

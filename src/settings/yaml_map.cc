@@ -48,7 +48,7 @@ std::string ToYaml(std::string_view text) {
     const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     const std::string_view line = text.substr(begin, end - begin);
     const size_t colon = ColonWithoutBlank(line);
-    if (begin == 0 && line.starts_with("%YAML")) {
+    if (line.starts_with("%YAML")) {
       yaml += '#';
     }
     if (colon == std::string_view::npos) {

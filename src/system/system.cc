@@ -165,7 +165,7 @@ TrackedFrame System::Track(BuiltFrame built) {
   frames_.push_back(report.tracked);
   if (!is_localization_only_ && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
-    FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_);
+    FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_.all());
   }
   if (frame_callback_) {
     frame_callback_(report);
@@ -221,8 +221,8 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
 
 void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_map,
                     const ProgressCallback& on_poses) {
-  std::vector<LeftIsland> left = FinishRun(*pipeline_, sensor_, options_, remembered_, frames_,
-                                           cancellation, on_map, on_poses);
+  std::vector<LeftIsland> left = FinishRun(*pipeline_, sensor_, options_, remembered_,
+                                           frames_.all(), cancellation, on_map, on_poses);
   if (left_islands_.empty()) {  // in a second call the frames of these islands are lost already
     left_islands_ = std::move(left);
   }
@@ -244,7 +244,7 @@ std::shared_ptr<const Map> System::map() const { return pipeline_->map(); }
 
 Trajectory System::trajectory() const {
   const std::shared_ptr<const Map> map = pipeline_->map();
-  return map != nullptr ? ComposeTrajectory(*map, frames_) : Trajectory();
+  return map != nullptr ? ComposeTrajectory(*map, frames_.all()) : Trajectory();
 }
 
 StageTimes System::times() const {

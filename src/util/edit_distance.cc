@@ -29,7 +29,13 @@ bool IsMisspelt(std::string_view written, std::string_view known) {
     std::erase_if(rest, [](char c) { return c >= '0' && c <= '9'; });
     return rest;
   };
-  return EditDistance(written, known) <= std::max<size_t>(2, written.size() / 4) &&
+  // The part behind the dot tells names such as Camera.k4 and Camera.bf apart.
+  const size_t begin = written.rfind('.') + 1;  // 0 without a dot
+  const size_t of_part = written.substr(0, begin) == known.substr(0, begin)
+                             ? std::max(written.size(), known.size()) - begin
+                             : std::max(written.size(), known.size());
+  const size_t distance = EditDistance(written, known);
+  return distance <= std::max<size_t>(2, written.size() / 4) && 2 * distance <= of_part &&
          without_digits(written) != without_digits(known);
 }
 

@@ -11,6 +11,7 @@
 
 #include "files/text_rows.h"
 #include "support/plane_sequence.h"
+#include "support/rendered_desk.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"
@@ -168,6 +169,40 @@ TEST_F(CheckMasks, AcceptsBoxesOfYolo) {
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("(boxes)"), std::string::npos) << result.output;
   EXPECT_EQ(Count(result, "kept"), "1");
+}
+
+// Masks of images that a program has turned by their EXIF data fit nothing, and nothing is mapped.
+TEST(CheckMasksOfTurnedImages, AreNoticedByAllPrograms) {
+  const RenderedDesk rendered(20);
+  const fs::path desk = rendered.path();
+  const TemporaryFolder folder;
+  for (const auto& entry : fs::directory_iterator(desk / "masks")) {
+    std::string turned;
+    if (entry.path().filename() == "classes.txt") {
+      fs::create_directories(folder.path() / "masks");
+      fs::copy(entry.path(), folder.path() / "masks" / "classes.txt");
+      continue;
+    }
+    ForEachRow(entry.path(), [&](const TextRow& row) {
+      turned += row.columns[0];
+      for (size_t i = 1; i + 1 < row.columns.size(); i += 2) {
+        turned += ' ' + std::to_string(1.0 - row.Number(i + 1, "y")) + ' ';
+        turned += row.columns[i];
+      }
+      turned += '\n';
+    });
+    folder.Write("masks/" + entry.path().filename().string(), turned);
+  }
+  for (const fs::path& masks : {desk / "masks", folder.path() / "masks"}) {
+    const ProgramResult checked = RunProgram("check_masks", {desk, masks, "--quiet"});
+    const ProgramResult mapped =
+        RunProgram("map_objects", {desk, "--poses", desk / "groundtruth.txt", "--masks", masks,
+                                   "--output", folder.path() / "run", "--overwrite", "--quiet"});
+    for (const std::string& errors : {checked.errors, mapped.errors}) {
+      EXPECT_EQ(errors.find("the EXIF orientation 6") != std::string::npos, masks != desk / "masks")
+          << errors;
+    }
+  }
 }
 
 TEST_F(CheckMasks, RefusesBadArguments) {

@@ -71,6 +71,18 @@ TEST_F(QueryObjects, ExitCodeIs1IfNothingFits) {
   EXPECT_EQ(Ask({"fire hydrants on the floor", "--classes", classes}).exit_code, 1);
 }
 
+// The classes of the network are those beside the masks of the run, if they are still there.
+TEST_F(QueryObjects, AClassThatOnlyTheNetworkKnowsIsThereNot) {
+  EXPECT_EQ(Ask({"is there a giraffe?"}).exit_code, 1);
+  EXPECT_EQ(Ask({"--class", "giraffe"}).exit_code, 1);
+  EXPECT_EQ(Ask({"is there a cup on the book?"}).exit_code, 0);
+  EXPECT_EQ(Ask({"gear wheel"}).exit_code, 2);
+  folder_.Write("masks/classes.txt", "gear wheel\ncup\n");
+  folder_.Write("run/summary.json", R"({"provenance": {"masks": "masks"}})");
+  EXPECT_EQ(Ask({"where are gear wheels"}).exit_code, 1);
+  EXPECT_EQ(Ask({"is there a giraffe?"}).exit_code, 2);
+}
+
 TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
   const std::string run = folder_.path() / "run";
   ExpectRefused({run, "unicorn"}, {"'unicorn'", "laptop"});

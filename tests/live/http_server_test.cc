@@ -88,7 +88,7 @@ TEST_F(HttpServerTest, AConnectionServesSeveralRequests) {
 TEST_F(HttpServerTest, GarbageAndLongRequestsAreRefused) {
   Start({.header_bytes = 1000, .body_bytes = 100});
   RawClient garbage(port());
-  garbage.Send(std::string("\x16\x03\x01\0\xff garbage\r\n\r\n", 20));
+  garbage.Send(std::string("\x16\x03\x01\0\xff garbage\r\n\r\n", 17));
   EXPECT_EQ(garbage.ReadAll().find("HTTP/1.1 400"), 0u);
   EXPECT_TRUE(garbage.is_closed());
   EXPECT_EQ(Ask(port(), "GET /", "X: " + std::string(3000, 'a') + "\r\n").find("HTTP/1.1 413"), 0u);

@@ -113,6 +113,13 @@ TEST_F(LiveMessagesTest, GroundTruthIsAlignedToThePath) {
   EXPECT_TRUE(message["set"].contains("groundtruth"));
   EXPECT_TRUE(message["set"].contains("errors"));
   EXPECT_TRUE(message["set"].contains("up"));
+  // A few more frames are not worth another alignment, but the curve of a run that rests is whole.
+  const auto has_errors = [&](const std::optional<std::string>& change) {
+    return Json::parse(change.value_or("{}")).value("set", Json::object()).contains("errors");
+  };
+  EXPECT_FALSE(has_errors(messages.MapChange(StateAfter(43), true)));
+  EXPECT_TRUE(has_errors(messages.MapChange(StateAfter(43), true, true)));
+  EXPECT_FALSE(has_errors(messages.MapChange(StateAfter(43), true, true)));
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ TEST(TrackHistory, KeepsALongRunEvenly) {
   for (int i = 0; i < 100000; ++i) {
     history.Add(FrameAt(i));
   }
-  const auto& frames = history.frames();
+  std::vector<TrackedFrame> frames = history.frames();
+  EXPECT_EQ(frames.back().timestamp, 99999);
+  frames.pop_back();  // the newest one is no multiple of the step
   ASSERT_LE(frames.size(), 100u);
   ASSERT_GE(frames.size(), 48u);
   const double step = frames[1].timestamp - frames[0].timestamp;
@@ -35,6 +37,17 @@ TEST(TrackHistory, KeepsALongRunEvenly) {
     EXPECT_EQ(frames[i].timestamp - frames[i - 1].timestamp, step);
   }
   EXPECT_GT(history.thinnings(), 0u);
+}
+
+// Otherwise the path of a run of an hour would end two seconds behind the camera.
+TEST(TrackHistory, TheNewestFrameIsTheLast) {
+  TrackHistory history(10);
+  for (int i = 0; i < 1000; ++i) {
+    history.Add(FrameAt(i));
+    ASSERT_EQ(history.frames().back().timestamp, i);
+  }
+  history.Add(FrameAt(1000, TrackingState::kLost));
+  EXPECT_EQ(history.frames().back().timestamp, 999);
 }
 
 }  // namespace

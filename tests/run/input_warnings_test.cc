@@ -39,7 +39,8 @@ std::string WarningOf(double x0, double y0, double x1, double y1) {
   const ImageSequence sequence = MadeSequence();
   const SequenceMasks masks({folder.path(), "yolo-seg", 640, 480}, MaskFrames(sequence));
   testing::internal::CaptureStderr();
-  WarnOfMisplacedMasks(sequence, {.width = 640, .height = 480}, masks);
+  WarnOfMisplacedMasks(sequence, {.width = 640, .height = 480},
+                       [&](size_t frame) { return masks.Read(frame); });
   return testing::internal::GetCapturedStderr();
 }
 

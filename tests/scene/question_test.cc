@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/util/error.h"
 #include "support/expect_error.h"
 
 namespace hullslam {
@@ -44,6 +45,41 @@ TEST(ParseQuestion, KnowsSynonymsAndThingsWithoutClass) {
   EXPECT_EQ(thing.conditions[1].relation, AskedRelation::kInFrontOf);
   EXPECT_EQ(ParseQuestion("book under the cup", kLabels).conditions[0].relation,
             AskedRelation::kUnder);
+}
+
+TEST(ParseQuestion, WordsThatOnlyOpenAQuestionAreSkipped) {
+  for (const char* const question :
+       {"is there a laptop?", "Are there any laptops?", "where is my laptop", "find the laptop",
+        "show me all laptops", "which laptop", "What is the laptop"}) {
+    const AskedThing thing = ParseQuestion(question, kLabels);
+    EXPECT_EQ(thing.labels, std::set<std::string>{"laptop"}) << question;
+    EXPECT_TRUE(thing.conditions.empty()) << question;
+  }
+  for (const char* const question : {"Is the cup on the book?", "which cups are on the book"}) {
+    const AskedThing thing = ParseQuestion(question, kLabels);
+    EXPECT_EQ(thing.labels, std::set<std::string>{"cup"}) << question;
+    ASSERT_EQ(thing.conditions.size(), 1U) << question;
+    EXPECT_EQ(thing.conditions[0].relation, AskedRelation::kOn) << question;
+  }
+  const AskedThing any = ParseQuestion("what is on the table?", kLabels);
+  EXPECT_EQ(any.kind, ThingKind::kAny);
+  EXPECT_EQ(any.conditions.at(0).other.at(0).labels, std::set<std::string>{"dining table"});
+  // A class may have the name of such a word.
+  EXPECT_EQ(ParseQuestion("show", {"show"}).kind, ThingKind::kClass);
+}
+
+// "Is" is not a misspelt "tv".
+TEST(ParseQuestion, OnlySimilarWordsAreSuggested) {
+  const auto message = [](const char* question, const std::set<std::string>& labels) {
+    try {
+      ParseQuestion(question, labels);
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_NE(message("is there a tw", {"cup", "tv"}).find("did you mean 'tv'?"), std::string::npos);
+  EXPECT_EQ(message("is there a pa", {"cup", "tv"}).find("did you mean"), std::string::npos);
 }
 
 TEST(ParseQuestion, UnknownWordsNameTheKnownOnes) {

@@ -49,6 +49,11 @@ TEST_F(TumSequenceTest, PairsImagesAndCountsUnpairedOnes) {
   EXPECT_EQ(Open().groundtruth, folder_.path() / "groundtruth.txt");
 }
 
+TEST_F(TumSequenceTest, NamesMayHaveTheSeparatorsOfWindows) {
+  WriteRgb("1.0 rgb\\a.png\n");
+  EXPECT_EQ(Open({.use_depth = false}).frames.at(0).image, folder_.path() / "rgb/a.png");
+}
+
 // Recorders repeat rows, and copies of data sets lack images. One such row does not end a run.
 TEST_F(TumSequenceTest, SingleRowsThatCannotBeUsedAreLeftOutWithOneWarning) {
   std::string rows;

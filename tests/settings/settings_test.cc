@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -108,6 +109,18 @@ TEST_F(Settings, CarriageReturnsAndAByteOrderMarkAreAccepted) {
     text.replace(at, 1, "\r\n");
   }
   EXPECT_EQ(Read(text).camera.fx, 500.0);
+}
+
+TEST_F(Settings, TheFirstLineMayBeMissingOrComeLater) {
+  const std::string lines = std::string(kMinimal).substr(10);
+  for (const std::string head :
+       {"", "# my camera\n%YAML:1.0\n", "\n\n%YAML:1.0\n---\n", "# mine\n", "\r\n%YAML:1.0\r\n"}) {
+    EXPECT_EQ(Read(head + lines).camera.fx, 500.0) << head;
+    const auto line = 5 + std::count(head.begin(), head.end(), '\n');
+    ExpectError(head + lines + "Camera.gx: 1\n",
+                {"camera.yaml:" + std::to_string(line) + ": unknown key 'Camera.gx'"});
+  }
+  ExpectError("a: 1\n", {"camera.yaml:1: unknown key 'a'"});
 }
 
 TEST_F(Settings, WholeNumbersMayBeWrittenWithAPoint) {
@@ -313,6 +326,12 @@ TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
   ExpectLineError("Camera.RGB: maybe", {"Camera.RGB is 'maybe'", "true or false"});
   ExpectLineError("Camera.fxx: 5", {"unknown key 'Camera.fxx'", "did you mean 'Camera.fx'"});
   ExpectLineError("Camera.fy: 5", {"'Camera.fy' was given before, in line 3"});
+}
+
+// Azure Kinect and OAK-D have such lenses; ORB-SLAM3's forks write zeros.
+TEST_F(Settings, TheRationalModelIsRefusedByName) {
+  ExpectLineError("Camera.k4: 0.1", {"Camera.k4 is '0.1'", "rational model", "cannot use yet"});
+  EXPECT_EQ(Read(std::string(kMinimal) + "Camera.k6: 0.0\n").camera.k3, 0.0);
 }
 
 TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {

@@ -2,6 +2,7 @@
 #include "hullslam/system/system.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -124,6 +125,11 @@ double MaxError(const Trajectory& trajectory) {
 
 class SystemTest : public testing::TestWithParam<PipelineKind> {};
 
+std::vector<TrackedFrame> CopyOfFrames(const System& system) {
+  const std::span<const TrackedFrame> frames = system.frames();
+  return {frames.begin(), frames.end()};
+}
+
 TEST_P(SystemTest, TracksACameraAlongAWall) {
   System system(Wall::Options(), GetParam());
   EXPECT_EQ(system.map(), nullptr);
@@ -159,7 +165,7 @@ TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
     }
     int iterations = 0;
     int poses = 0;
-    const std::vector<TrackedFrame> before = system.frames();
+    const std::vector<TrackedFrame> before = CopyOfFrames(system);
     system.Finish(
         &cancellation, [&](int done, int) { iterations = done; },
         [&](int done, int most) {
@@ -187,7 +193,7 @@ TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
   for (int i = 0; i < 15; ++i) {
     TrackFrame(system, i);
   }
-  const std::vector<TrackedFrame> before = system.frames();
+  const std::vector<TrackedFrame> before = CopyOfFrames(system);
   system.Finish();
   int changed = 0;
   for (size_t i = 0; i < before.size(); ++i) {
@@ -207,7 +213,7 @@ TEST_P(SystemTest, FinishLeavesThePosesOfFramesAsTheyAreIfAsked) {
   for (int i = 0; i < 15; ++i) {
     TrackFrame(system, i);
   }
-  const std::vector<TrackedFrame> before = system.frames();
+  const std::vector<TrackedFrame> before = CopyOfFrames(system);
   system.Finish();
   for (size_t i = 0; i < before.size(); ++i) {
     if (before[i].from_keyframe) {
@@ -387,7 +393,7 @@ TEST(System, OnlyTheLastFramesAreKeptForFinish) {
   const auto pose_of = [&](size_t i) {
     return system.frames()[i].from_keyframe.value().cam_from_reference.translation;
   };
-  const std::vector<TrackedFrame> before = system.frames();
+  const std::vector<TrackedFrame> before = CopyOfFrames(system);
   const auto is_refined = [&](size_t i) {
     return pose_of(i) != before[i].from_keyframe.value().cam_from_reference.translation;
   };
@@ -411,6 +417,32 @@ TEST(System, OnlyTheLastFramesAreKeptForFinish) {
   EXPECT_TRUE(is_refined(9));
   EXPECT_EQ(system.trajectory().size(), 10u);
   EXPECT_LT(MaxError(system.trajectory()), 0.01);
+}
+
+// The frames themselves and the times of their stages are kept in bounded memory too.
+TEST(System, AFrameOfALongRunTakesNoMemory) {
+  for (const PipelineKind kind : {PipelineKind::kSequential, PipelineKind::kThreaded}) {
+    System system(Wall::Options(), kind);
+    ASSERT_EQ(TrackFrame(system, 0).state, TrackingState::kTracked);
+    const auto heap_after = [&](size_t frames) {
+      for (size_t i = system.frames().size(); i < frames; ++i) {
+        BuiltFrame built;
+        built.frame = std::make_unique<Frame>();
+        built.frame->timestamp = Time(static_cast<int>(i));
+        system.Track(std::move(built));
+      }
+      const struct mallinfo2 info = mallinfo2();
+      return static_cast<double>(info.uordblks + info.hblkhd);
+    };
+    const double before = heap_after(12000);
+    const double grown = heap_after(30000) - before;
+    EXPECT_LT(grown / 18000.0, 8.0) << "bytes a frame";
+    ASSERT_EQ(system.frames().size(), 30000u);
+    EXPECT_EQ(system.frames()[0].state, TrackingState::kTracked);
+    EXPECT_EQ(system.frames()[29999].timestamp, Time(29999));
+    system.Finish();
+    EXPECT_EQ(system.trajectory().size(), 1u);
+  }
 }
 
 // A square in front of the wall, so that objects are part of the comparison.

@@ -25,6 +25,10 @@ TEST(EditDistance, AMisspeltNameIsSimilarAndDiffersNotOnlyInNumbers) {
   EXPECT_TRUE(IsMisspelt("objects.start.min_view", "objects.start.min_views"));
   EXPECT_TRUE(IsMisspelt("lenght", "length"));
   EXPECT_FALSE(IsMisspelt("PointCloudMapping.Resolution", "objects.start.inflation"));
+  EXPECT_FALSE(IsMisspelt("is", "tv"));
+  EXPECT_FALSE(IsMisspelt("my", "cup"));
+  EXPECT_TRUE(IsMisspelt("boat", "book"));
+  EXPECT_FALSE(IsMisspelt("Camera.k4", "Camera.bf"));
   EXPECT_FALSE(IsMisspelt("Camera.k4", "Camera.k1"));
   EXPECT_FALSE(IsMisspelt("Camera2.fx", "Camera.fx"));
 }

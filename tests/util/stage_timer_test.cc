@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <vector>
 
 namespace hullslam {
 namespace {
@@ -28,6 +30,50 @@ TEST(StageTimes, MergeAppends) {
   EXPECT_EQ(first.samples().find("track")->second, (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(first.samples().find("loop")->second, (std::vector<double>{3.0}));
   EXPECT_EQ(second.samples().size(), 2u);
+}
+
+// So a run of many hours needs no more memory than one of minutes.
+TEST(StageTimes, KeepsEvenlyChosenSamplesOfALongRun) {
+  StageTimes times;
+  constexpr size_t kCount = 5 * kMostSamples;
+  for (size_t i = 0; i < kCount; ++i) {
+    times.Add("track", static_cast<double>(i));
+  }
+  const std::vector<double>& kept = times.samples().at("track");
+  ASSERT_LE(kept.size(), kMostSamples);
+  ASSERT_GE(kept.size(), kMostSamples / 2);
+  for (size_t i = 0; i < kept.size(); ++i) {
+    ASSERT_EQ(kept[i], 8.0 * static_cast<double>(i));
+  }
+  const TimeStatistics of_all = Summarize(times, "track");
+  EXPECT_EQ(of_all.mean, 0.5 * (kCount - 1));
+  EXPECT_EQ(of_all.max, kCount - 1);
+  EXPECT_NEAR(of_all.median, 0.5 * kCount, 8.0);
+  EXPECT_EQ(times.Total("track").count, kCount);
+  EXPECT_EQ(Summarize(times, "map").max, 0.0);
+}
+
+// Each sample that is left stands for as many samples of the whole.
+TEST(StageTimes, MergeThinsTheFinerSamples) {
+  StageTimes many;
+  for (size_t i = 0; i < 3 * kMostSamples; ++i) {
+    many.Add("track", 1.0);
+  }
+  StageTimes few;
+  for (size_t i = 0; i < kMostSamples; ++i) {
+    few.Add("track", 5.0);
+  }
+  StageTimes reversed = few;
+  reversed.Merge(many);
+  many.Merge(few);
+  for (const StageTimes& merged : {many, reversed}) {
+    const std::vector<double>& kept = merged.samples().at("track");
+    const auto fives = static_cast<double>(std::count(kept.begin(), kept.end(), 5.0));
+    EXPECT_LE(kept.size(), kMostSamples);
+    EXPECT_NEAR(fives / static_cast<double>(kept.size()), 0.25, 0.01);
+    EXPECT_DOUBLE_EQ(Summarize(merged, "track").mean, 2.0);
+    EXPECT_EQ(merged.Total("track").max, 5.0);
+  }
 }
 
 TEST(ScopedTimer, AddsOneSampleWhenDestroyed) {

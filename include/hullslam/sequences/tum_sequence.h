@@ -32,9 +32,10 @@ void CheckTumFolder(const std::filesystem::path& folder);
 // of frames; frames with the same number belong together. So are the folders of 7-Scenes
 // (frame-000000.color.png beside frame-000000.depth.png) and Replica (results/frame000000.jpg and
 // results/depth000000.png). The ground truth is groundtruth.txt if it
-// exists. Everything is checked that needs no decoding of images. Throws InputError with file and
-// line for malformed lines and for stamps that do not increase, with the name of the first missing
-// image, and with the smallest gap if no image can be paired.
+// exists, else the poses of 7-Scenes (frame-000000.pose.txt) or Replica (traj.txt). Everything is
+// checked that needs no decoding of images. Throws InputError with file and line for malformed
+// lines and for stamps that do not increase, with the name of the first missing image, and with the
+// smallest gap if no image can be paired.
 ImageSequence OpenTumSequence(const std::filesystem::path& folder,
                               const TumSequenceOptions& options = {});
 

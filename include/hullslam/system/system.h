@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "hullslam/system/options.h"
 #include "hullslam/system/system_start.h"
 #include "hullslam/util/cancellation.h"
+#include "hullslam/util/mapped_vector.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
@@ -132,8 +134,8 @@ class System {
 
   // The newest snapshot; null before the first keyframe of a new map.
   std::shared_ptr<const Map> map() const;
-  // One entry per call of Track.
-  const std::vector<TrackedFrame>& frames() const { return frames_; }
+  // One entry per call of Track. Valid until the next call of Track or Finish.
+  std::span<const TrackedFrame> frames() const { return frames_.all(); }
   // All tracked frames in the main island of the current map.
   Trajectory trajectory() const;
   // Durations of the stages. "frame" is building a frame, "pose" is tracking it. With kRealtime,
@@ -171,7 +173,7 @@ class System {
   std::unique_ptr<TaskRunner> runner_;  // for building frames
   DetectionCounts mask_counts_;         // counts of the tracked frames
   std::function<void(const FrameReport&)> frame_callback_;
-  std::vector<TrackedFrame> frames_;
+  MappedVector<TrackedFrame> frames_;
   std::list<RememberedFrame> remembered_;  // until Finish, but not all frames of a long run
   std::vector<LeftIsland> left_islands_;
   StageTimes times_;

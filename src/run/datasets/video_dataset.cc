@@ -16,6 +16,7 @@
 #include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
+#include "util/counted.h"
 
 namespace hullslam {
 namespace {
@@ -85,8 +86,8 @@ class VideoDataset final : public Dataset {
   }
 
   void PrintInput(const ImageStream& stream, const SystemOptions& options) const {
-    Print("{} images of {}x{} px, {}\n", stream.images.available, stream.width, stream.height,
-          stream.images.stamps_note);
+    Print("{} of {}x{} px, {}\n", Counted(stream.images.available, "image"), stream.width,
+          stream.height, stream.images.stamps_note);
     if (fov_) {
       Print(
           "camera: a field of view of {:g} degrees (focal length {:.1f} px) without distortion, "

@@ -267,6 +267,8 @@ int RunCheckMasks(int argc, char** argv) {
       {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
   CatchInterrupts();
   const auto output = OpenOutput(arguments);
+  WarnOfMisplacedMasks(sequence, options.camera,
+                       [&](size_t frame) { return source->Read(frames[frame]).masks; });
   MaskStatistics counts;
   Progress progress(frames.size(), arguments.quiet);
   for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {

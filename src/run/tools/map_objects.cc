@@ -269,6 +269,7 @@ int RunMapObjects(int argc, char** argv) {
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {kProgram, arguments.overwrite});
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
+  WarnOfMisplacedMasks(inputs.sequence, camera, [&](size_t frame) { return masks.Read(frame); });
   if (!arguments.quiet) {
     PrintInputs(inputs, masks);
   }

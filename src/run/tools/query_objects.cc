@@ -12,6 +12,8 @@
 
 #include "eval/object_metrics.h"
 #include "files/atomic_file.h"
+#include "files/json_file.h"
+#include "files/json_node.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
 #include "files/read_text.h"
@@ -27,6 +29,7 @@
 #include "scene/make_scene.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
+#include "sequences/run_sequence.h"
 #include "util/printable.h"
 #include "util/trim.h"
 #include "view/answer_sheet.h"
@@ -158,10 +161,30 @@ std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
   }
 }
 
-// A question about a class of COCO, which most networks know, has the answer that there is none if
-// the map lacks it. The message about an unknown word lists the classes of the map.
-AskedThing ParseKnown(const std::string& question, const std::set<std::string>& labels) {
-  std::set<std::string> known(CocoClasses().begin(), CocoClasses().end());
+// The classes of the network that made the masks of the run: those of classes.txt beside the masks
+// if they are still there, else those of COCO, which most networks know.
+std::vector<std::string> NetworkClasses(const fs::path& source) {
+  const fs::path summary = source / "summary.json";
+  std::error_code error;
+  try {
+    if (fs::exists(summary, error)) {
+      const nlohmann::json json = ReadJson(summary);
+      const JsonNode provenance = JsonNode(summary, json).At("provenance");
+      if (const auto masks = FindRunInput(provenance.At("masks").Text(), source)) {
+        return ReadClasses(*masks);
+      }
+    }
+  } catch (const InputError&) {
+    // The answer does not need them.
+  }
+  return CocoClasses();
+}
+
+// A question about a class that the network knows has the answer that there is none if the map
+// lacks it. The message about an unknown word lists the classes of the map.
+AskedThing ParseKnown(const std::string& question, const std::set<std::string>& labels,
+                      const std::vector<std::string>& network) {
+  std::set<std::string> known(network.begin(), network.end());
   known.insert(labels.begin(), labels.end());
   try {
     return ParseQuestion(question, known);
@@ -172,8 +195,11 @@ AskedThing ParseKnown(const std::string& question, const std::set<std::string>& 
 
 std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& arguments) {
   const std::set<std::string> labels = KnownClasses(scene, arguments.classes);
+  const auto parse = [&](const std::string& question) {
+    return ParseKnown(question, labels, NetworkClasses(arguments.source));
+  };
   if (!arguments.question.empty()) {
-    return AnswerQuestion(scene, ParseKnown(arguments.question, labels));
+    return AnswerQuestion(scene, parse(arguments.question));
   }
   if (arguments.like) {
     return FindLike(scene, ObjectId(*arguments.like));
@@ -183,7 +209,7 @@ std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& argume
   }
   AskedThing thing;
   if (!arguments.label.empty()) {
-    thing = ParseQuestion(arguments.label, labels);
+    thing = parse(arguments.label);
     if (thing.kind != ThingKind::kClass || !thing.conditions.empty()) {
       throw InputError("--class: '" + arguments.label + "', expected a class");
     }
