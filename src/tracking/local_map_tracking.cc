@@ -19,8 +19,8 @@
 namespace hullslam {
 namespace {
 
-// A landmark that is seen from its mean direction is searched within a smaller radius (Mur-Artal and
-// Tardos 2017).
+// A landmark that is seen from its mean direction is searched within a smaller radius (Mur-Artal
+// and Tardos 2017).
 constexpr double kFrontalShare = 2.5 / 4.0;
 constexpr double kCosFrontal = 0.998;
 

@@ -13,7 +13,7 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-const PinholeCamera kCamera = SyntheticSensor().camera;  // f 500, centre 320, 240
+const PinholeCamera kMadeCamera = SyntheticSensor().camera;  // f 500, centre 320, 240
 
 Matrix6d Information(double rotation_sigma, double translation_sigma) {
   Eigen::Matrix<double, 6, 1> sigmas;
@@ -26,26 +26,26 @@ Matrix6d Information(double rotation_sigma, double translation_sigma) {
 // (s f / z)^2 (I + n n^T), whose largest eigenvalue is (s f / z)^2 (1 + |n|^2).
 TEST(CornerSigma, OfATranslationIsAsComputedByHand) {
   const double expected = 0.01 * 500.0 / 2.0 * std::sqrt(1.0 + 0.64);
-  EXPECT_NEAR(CornerSigma(kCamera, Information(1e-9, 0.01), 2.0), expected, 1e-6);
+  EXPECT_NEAR(CornerSigma(kMadeCamera, Information(1e-9, 0.01), 2.0), expected, 1e-6);
 }
 
 // A rotation about an axis across n moves the corner along n by f (1 + |n|^2) per radian.
 TEST(CornerSigma, OfARotationDoesNotDependOnTheDepth) {
   const double expected = 0.01 * 500.0 * 1.64;
-  EXPECT_NEAR(CornerSigma(kCamera, Information(0.01, 1e-9), 2.0), expected, 1e-6);
-  EXPECT_NEAR(CornerSigma(kCamera, Information(0.01, 1e-9), 20.0), expected, 1e-6);
+  EXPECT_NEAR(CornerSigma(kMadeCamera, Information(0.01, 1e-9), 2.0), expected, 1e-6);
+  EXPECT_NEAR(CornerSigma(kMadeCamera, Information(0.01, 1e-9), 20.0), expected, 1e-6);
 }
 
 TEST(CornerSigma, DoesNotDependOnTheUnitOfLength) {
-  EXPECT_NEAR(CornerSigma(kCamera, Information(0.003, 0.02), 2.0),
-              CornerSigma(kCamera, Information(0.003, 0.06), 6.0), 1e-9);
+  EXPECT_NEAR(CornerSigma(kMadeCamera, Information(0.003, 0.02), 2.0),
+              CornerSigma(kMadeCamera, Information(0.003, 0.06), 6.0), 1e-9);
 }
 
 TEST(CornerSigma, IsInfiniteForAPoseThatIsNotDetermined) {
   Matrix6d information = Information(0.01, 0.01);
   information.row(4).setZero();
   information.col(4).setZero();
-  EXPECT_EQ(CornerSigma(kCamera, information, 2.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(CornerSigma(kMadeCamera, information, 2.0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
