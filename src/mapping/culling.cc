@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -12,6 +13,7 @@
 #include "mapping/sensor_rules.h"
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -98,6 +100,44 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const Cull
          (has_many_close || all.MostAreRedundant());
 }
 
+// The nearest older (step -1) or newer (step 1) keyframe of the same island. Null if there is none.
+const Keyframe* NextInTime(const Map& map, KeyframeId id, int step) {
+  const IslandId island = map.keyframes().At(id).island;
+  const auto end = static_cast<int64_t>(map.keyframes().NextId().value);
+  for (int64_t i = int64_t{id.value} + step; i >= 0 && i < end; i += step) {
+    const Keyframe* const keyframe = map.keyframes().Find(KeyframeId(static_cast<uint32_t>(i)));
+    if (keyframe != nullptr && keyframe->island == island) {
+      return keyframe;
+    }
+  }
+  return nullptr;
+}
+
+int CountShared(const Keyframe& a, const Keyframe& b) {
+  IdSet<LandmarkId> of_a;
+  for (const LandmarkId id : a.landmarks) {
+    if (id.IsValid()) {
+      of_a.Insert(id);
+    }
+  }
+  return static_cast<int>(std::count_if(b.landmarks.begin(), b.landmarks.end(), [&](LandmarkId id) {
+    return id.IsValid() && of_a.Contains(id);
+  }));
+}
+
+// Whether the keyframes before and after it share too few landmarks without it. Each landmark may
+// be seen by many others and yet none of them see it on both sides.
+bool JoinsItsNeighbours(const Map& map, KeyframeId id, int min_shared) {
+  const Keyframe& keyframe = map.keyframes().At(id);
+  const Keyframe* const before = NextInTime(map, id, -1);
+  const Keyframe* const after = NextInTime(map, id, 1);
+  if (before == nullptr || after == nullptr) {
+    return false;
+  }
+  const int weakest = std::min(CountShared(*before, keyframe), CountShared(keyframe, *after));
+  return CountShared(*before, *after) < std::min(weakest, min_shared);
+}
+
 // The centre of the object. Null for a candidate without shape and depth, whose location is not
 // known.
 std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
@@ -175,6 +215,7 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
     if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
+        !JoinsItsNeighbours(map, candidate.keyframe, rules.min_shared) &&
         !(rules.keeps_object_views &&
           IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
       map.CullKeyframe(candidate.keyframe);

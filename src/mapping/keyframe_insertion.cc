@@ -8,11 +8,10 @@
 #include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "map/spanning_tree.h"
+#include "mapping/sensor_rules.h"
 
 namespace hullslam {
 namespace {
-
-constexpr size_t kMinDepthLandmarks = 100;
 
 void ApplySightings(Map& map, const std::vector<Sighting>& sightings) {
   for (const Sighting& sighting : sightings) {
@@ -42,16 +41,15 @@ void AddKnownLandmarks(Map& map, KeyframeId id, const std::vector<LandmarkId>& l
   }
 }
 
-// Makes landmarks of keypoints with depth that show none yet: of all close ones and of the nearest
-// hundred.
-void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
+// Makes landmarks of keypoints with depth that show none yet.
+void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor, const LandmarkRules& rules,
                        std::vector<LandmarkId>& created) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(id).frame;
   const Rigid3 world_from_cam = Inverse(map.keyframes().At(id).cam_from_world);
   size_t count = 0;
   for (const uint32_t keypoint : KeypointsByDepth(frame->features)) {
     const double depth = static_cast<double>(frame->features.depth[keypoint]);
-    if (depth > sensor.close_depth && count >= kMinDepthLandmarks) {
+    if (depth > sensor.close_depth && count >= rules.enough_depth_landmarks) {
       break;
     }
     ++count;
@@ -94,7 +92,7 @@ std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, co
 }
 
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
-                          std::vector<LandmarkId>& created) {
+                          std::vector<LandmarkId>& created, MappingRule rule) {
   const KeyframeId id = map.AddKeyframe(request.frame, map.CamFromWorld(request.pose),
                                         IslandOf(map, request.pose.reference));
   ApplySightings(map, request.sightings);
@@ -105,7 +103,7 @@ KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor
     // root.
     SetParent(map, id, map.NearestAlive(request.pose.reference));
   }
-  AddDepthLandmarks(map, id, sensor, created);
+  AddDepthLandmarks(map, id, sensor, LandmarkRules::ForSensor(sensor, rule), created);
   return id;
 }
 

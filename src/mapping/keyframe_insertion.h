@@ -6,6 +6,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/mapping/mapping_options.h"
 
 namespace hullslam {
 
@@ -16,10 +17,12 @@ std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, co
                                          std::vector<LandmarkId>& created);
 
 // Makes a keyframe of the requested frame, with its edges and its parent. It observes the requested
-// landmarks that still exist. Keypoints with depth that show no landmark become landmarks if they
-// are close points or among the hundred nearest keypoints. Their ids are appended to `created`. If
-// the keyframe shares no landmark with another one, its reference becomes its parent.
+// landmarks that still exist. Keypoints with depth that show no landmark become landmarks; by the
+// rule of ORB-SLAM2 only the close ones and the hundred nearest (LandmarkRules). Their ids are
+// appended to `created`. If the keyframe shares no landmark with another one, its reference becomes
+// its parent.
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
-                          std::vector<LandmarkId>& created);
+                          std::vector<LandmarkId>& created,
+                          MappingRule rule = MappingRule::kHullslam);
 
 }  // namespace hullslam

@@ -90,7 +90,7 @@ bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   {
     const ScopedTimer timer(times_, "map_insert");
     BeginSession();
-    keyframe = InsertKeyframe(map_, request, sensor_, recent_);
+    keyframe = InsertKeyframe(map_, request, sensor_, recent_, options_.landmark_rule);
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
   }

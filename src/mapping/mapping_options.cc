@@ -14,9 +14,11 @@ void MappingOptions::Bind(OptionTable& options) {
   scope.AddEnum("culling_rule", &culling_rule, {"hullslam", "orb_slam2"},
                 "which keyframes are redundant: also the views of objects, far landmarks and "
                 "viewpoints count, or the rule of ORB-SLAM2");
-  scope.AddEnum("landmark_rule", &landmark_rule, {"hullslam", "orb_slam2"},
-                "which pairs of keypoints without depth become landmarks: those whose expected "
-                "parallax is large enough, or those whose own is, as in ORB-SLAM2");
+  scope.AddEnum(
+      "landmark_rule", &landmark_rule, {"hullslam", "orb_slam2"},
+      "which keypoints become landmarks: all with depth and pairs whose expected parallax "
+      "is large enough, or those that are near or whose own parallax is large enough, as "
+      "in ORB-SLAM2");
   scope.Add("compact_keyframes", &compact_keyframes,
             "remove keypoints that show no landmark from keyframes far from the newest one");
   scope.Add("final_bundle_adjustment", &final_bundle_adjustment,

@@ -23,7 +23,12 @@ CullingRules CullingRules::ForSensor(SensorKind kind, MappingRule rule) {
   // Depth gives every keyframe the scale. One observation with depth and one without are too few.
   // With three other observers, too few keyframes remain where the camera passes a plain wall:
   // those that are left share so few landmarks that the map bends there (docs/results.md, icl3).
-  return {.max_weak_weight = 3, .other_observers = 4, .observers_need_parallax = false};
+  // What others see one by one may still be needed to join two sides. Mur-Artal and Tardos 2015
+  // (section III.D) call two keyframes strongly connected from 100 shared landmarks on.
+  return {.max_weak_weight = 3,
+          .other_observers = 4,
+          .observers_need_parallax = false,
+          .min_shared = 100};
 }
 
 LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor, MappingRule rule) {
@@ -46,10 +51,17 @@ LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor, MappingRule rule) {
   }
   // Keyframes have made landmarks of their depth already. Depth is more precise than triangulation
   // over a baseline that is shorter than that of the virtual stereo pair.
-  return {.neighbours = 10,
-          .min_baseline = sensor.baseline(),
-          .min_baseline_share = 0.0,
-          .nearby_landmarks_decide = false};
+  LandmarkRules rules{.neighbours = 10,
+                      .min_baseline = sensor.baseline(),
+                      .min_baseline_share = 0.0,
+                      .nearby_landmarks_decide = false};
+  if (rule == MappingRule::kOrbSlam2) {
+    // The function CreateNewKeyFrame of the released Tracking.cc. Without it all keypoints with
+    // depth become landmarks, far ones too: their weight has the error of their depth, and where
+    // the camera looks through a door, little else is in the next image.
+    rules.enough_depth_landmarks = 100;
+  }
+  return rules;
 }
 
 }  // namespace hullslam

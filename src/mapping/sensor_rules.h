@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "hullslam/frame/sensor.h"
@@ -29,14 +30,19 @@ struct CullingRules {
   int min_close_landmarks = 100;
   // Whether only close landmarks count. Then a keyframe without any is not redundant.
   bool only_close_landmarks = false;
+  // A keyframe stays if the one before and the one after it would share fewer landmarks than this
+  // without it, and fewer than each of them shares with it.
+  int min_shared = 0;
   // Whether a keyframe stays if an object needs its view.
   bool keeps_object_views = true;
 
   static CullingRules ForSensor(SensorKind kind, MappingRule rule = MappingRule::kHullslam);
 };
 
-// The rules by which landmarks are made from pairs of keyframes.
+// The rules by which landmarks are made from depth and from pairs of keyframes.
 struct LandmarkRules {
+  // Once a keyframe has this many landmarks, its keypoints beyond the close ones become none.
+  size_t enough_depth_landmarks = std::numeric_limits<size_t>::max();
   size_t neighbours = 0;  // number of best covisible keyframes that are paired with a new one
   // Shortest baseline of a pair, m. Absent: `min_baseline_share` of the median depth of the
   // landmarks.

@@ -56,6 +56,14 @@ double MeanDistance(const Rigid3& cam_from_world, std::span<const PoseObject> ob
   return sum / static_cast<double>(objects.size());
 }
 
+// The Hessian of half of the cost, which is the inverse covariance, since residuals are in sigmas.
+void AddInformation(const internal::PointTerms& points, const internal::ObjectTerms& objects,
+                    JointPoseResult& result) {
+  Vector6d gradient;
+  points.Linearize(result.points.cam_from_world, result.information, gradient);
+  objects.Linearize(result.points.cam_from_world, result.information, gradient);
+}
+
 bool IsConstrained(const JointPoseResult& result, const JointPoseOptions& options) {
   return result.points.inlier_count >= 3 || result.used_objects >= options.objects.min_objects;
 }
@@ -71,6 +79,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
   terms.Write(result);
   if (result.used_objects == 0) {
     result.points = OptimizePose(camera, cam_from_world, observations, options.points);
+    AddInformation({camera, observations, result.points.is_inlier, false}, terms, result);
     return result;
   }
   const double distance = MeanDistance(cam_from_world, objects);
@@ -90,6 +99,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
   if (!IsConstrained(result, options)) {
     pose = cam_from_world;
   }
+  AddInformation({camera, observations, result.points.is_inlier, false}, terms, result);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,6 +31,9 @@ struct JointPoseResult {
   std::vector<uint8_t> object_used;  // one per object; 0 if dropped or without residual
   int used_objects = 0;
   int dropped_objects = 0;  // because half of their residuals or more were outliers
+  // The inverse covariance of the pose by the six parameters of Retract, as the inliers and the
+  // used objects determine it; without the prior.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 // Like OptimizePose, but mapped objects constrain the pose together with the points. It minimises

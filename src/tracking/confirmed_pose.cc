@@ -5,6 +5,14 @@
 #include <utility>
 
 namespace hullslam {
+namespace {
+
+// The landmarks of the local map are searched within kLocalSearchRadius of where the pose places
+// them. If a pose may place them further off than that, by three standard deviations, those that
+// are found elsewhere in the image do not confirm it, and the next frame begins at a wrong place.
+constexpr double kMostCornerSigma = kLocalSearchRadius / 3.0;
+
+}  // namespace
 
 PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingContext& context,
                              const LastFrame& last, std::span<PoseSource* const> sources) {
@@ -23,7 +31,8 @@ PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingC
         start->keyframe_of_place.IsValid() ? start->keyframe_of_place : last.reference;
     LocalTracking tracking = TrackLocalMap(frame, map, context, near, std::move(*start));
     const int inliers = tracking.estimate.EffectiveInliers();
-    if (inliers < context.options.min_inliers) {
+    if (inliers < context.options.min_inliers ||
+        tracking.estimate.corner_sigma > kMostCornerSigma) {
       search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);
       continue;
     }

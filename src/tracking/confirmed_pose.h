@@ -27,7 +27,8 @@ struct PoseSearch {
 };
 
 // Asks the sources one after the other for a first pose of the frame. A pose is confirmed if the
-// local map finds tracking.min_inliers landmarks with it. The first confirmed pose is the result if
+// local map finds tracking.min_inliers landmarks with it and if these determine it in the whole
+// image: landmarks along one edge agree with many poses. The first confirmed pose is the result if
 // its source found as many landmarks as relocalisation needs. With fewer, its matches may agree by
 // chance, so the other sources that begin at the last frame are asked too, and the pose with most
 // landmarks of the local map is the result.

@@ -19,11 +19,10 @@
 namespace hullslam {
 namespace {
 
-// Search windows in px at level 0: Mur-Artal and Tardos 2017.
-constexpr double kRadius = 4.0;
-constexpr double kRadiusFrontal = 2.5;
+// A landmark that is seen from its mean direction is searched within a smaller radius (Mur-Artal
+// and Tardos 2017).
+constexpr double kFrontalShare = 2.5 / 4.0;
 constexpr double kCosFrontal = 0.998;
-constexpr double kDepthRadiusFactor = 3.0;  // because first poses and depths are less precise
 
 // The search window of a landmark. Null if the camera cannot recognise it (ViewLandmark).
 std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
@@ -32,8 +31,7 @@ std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam
   if (!view) {
     return std::nullopt;
   }
-  const double radius =
-      kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kRadiusFrontal : kRadius);
+  const double radius = kLocalSearchRadius * (view->cos_view > kCosFrontal ? kFrontalShare : 1.0);
   Projection projection;
   projection.pixel = view->pixel.cast<float>();
   projection.right_u = static_cast<float>(view->right_u);

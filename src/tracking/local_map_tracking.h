@@ -10,6 +10,11 @@
 
 namespace hullslam {
 
+// The largest radius within which a landmark of the local map is searched at its predicted pixel,
+// px at level 0: 4 px (Mur-Artal and Tardos 2017), three times, because first poses and depths are
+// less precise.
+inline constexpr double kLocalSearchRadius = 12.0;
+
 // A frame tracked against its local map.
 struct LocalTracking {
   PoseEstimate estimate;

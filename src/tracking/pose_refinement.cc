@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/pose_refinement.h"
 
+#include <utility>
 #include <vector>
 
 #include "frame/measure_point.h"
+#include "optim/corner_sigma.h"
+#include "util/median.h"
 
 namespace hullslam {
 
@@ -26,11 +29,17 @@ PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContex
   estimate.cam_from_world = joint.points.cam_from_world;
   estimate.inliers = joint.points.inlier_count;
   estimate.used_objects = joint.used_objects;
+  std::vector<double> depths;
   for (size_t k = 0; k < keypoints.size(); ++k) {
     if (joint.points.is_inlier[k] == 0) {
       estimate.landmarks[keypoints[k]] = LandmarkId();
+    } else {
+      depths.push_back((estimate.cam_from_world * observations[k].point).z());
     }
   }
+  estimate.corner_sigma = depths.empty() ? 0.0
+                                         : CornerSigma(context.sensor.camera, joint.information,
+                                                       Median(std::move(depths)));
   return estimate;
 }
 

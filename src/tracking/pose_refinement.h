@@ -22,6 +22,9 @@ struct PoseEstimate {
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
+  // How well landmarks and objects determine the pose: CornerSigma at the median depth of the
+  // landmarks, px. 0 without landmarks.
+  double corner_sigma = 0.0;
   // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
   // place.
   KeyframeId keyframe_of_place;

@@ -255,6 +255,39 @@ TEST(CullKeyframes, ByTheRuleOfOrbSlam2MonocularViewpointsAreNotCompared) {
   EXPECT_EQ(CullKeyframes(together.map, KeyframeId(7), sensor, 3, MappingRule::kOrbSlam2), 5);
 }
 
+// Keyframes 0 to 3 see one side of a passage, 5 to 8 the other one, and keyframe 4 sees both. They
+// all see `across` landmarks. The others stay, because each of them is needed by an object.
+Map PassageBetweenTwoSides(int across) {
+  Map map;
+  std::vector<KeyframeId> ids;
+  for (uint32_t i = 0; i < 9; ++i) {
+    ids.push_back(AddKeyframe(map, 300, 300));
+  }
+  Share(map, {ids.begin(), ids.begin() + 5}, 60);
+  Share(map, {ids.begin() + 4, ids.end()}, 60);
+  Share(map, ids, across);
+  for (const KeyframeId id : ids) {
+    UpdateCovisibility(map, id);
+    if (id != ids[4]) {
+      EXPECT_TRUE(map.AddObservation(map.AddObject(), id, 0));
+    }
+  }
+  return map;
+}
+
+// Four others see each of its landmarks, but none of them sees both sides.
+TEST(CullKeyframes, AKeyframeThatJoinsItsNeighboursStays) {
+  const auto is_culled = [](int across) {
+    Map map = PassageBetweenTwoSides(across);
+    Cull(map, KeyframeId(8), SyntheticSensor());
+    EXPECT_EQ(map.keyframes().size(), map.keyframes().Contains(KeyframeId(4)) ? 9u : 8u);
+    return !map.keyframes().Contains(KeyframeId(4));
+  };
+  EXPECT_FALSE(is_culled(0));
+  EXPECT_FALSE(is_culled(99));
+  EXPECT_TRUE(is_culled(100));
+}
+
 TEST(CullKeyframes, AFewLandmarksAreNoReasonForCulling) {
   const SyntheticWorld many({.points = 70});
   const SyntheticWorld few({.points = 20});

@@ -139,8 +139,8 @@ TEST(InitialMapInsertion, AnotherOneBecomesAnIslandWhichGrowsByItsOwnKeyframes) 
   }
 }
 
-// A keyframe after the initial map makes landmarks of all close keypoints and of the nearest
-// hundred.
+// By the rule of ORB-SLAM2, a keyframe after the initial map makes landmarks of all close keypoints
+// and of the nearest hundred.
 void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close) {
   const SyntheticWorld world;
   Sensor sensor = world.sensor();
@@ -150,7 +150,7 @@ void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close)
   KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
   request.landmarks.assign(view.points.size(), LandmarkId());
   std::vector<LandmarkId> created;
-  const KeyframeId id = InsertKeyframe(made.map, request, sensor, created);
+  const KeyframeId id = InsertKeyframe(made.map, request, sensor, created, MappingRule::kOrbSlam2);
   EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
   float farthest_taken = 0.0f;
   float nearest_left = 1e9f;
@@ -171,10 +171,29 @@ void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close)
   EXPECT_LT(farthest_taken, nearest_left);
 }
 
-TEST(KeyframeInsertion, MakesLandmarksOfAllCloseKeypoints) { ExpectNearestAreTaken(4.5, true); }
+TEST(KeyframeInsertion, ByTheRuleOfOrbSlam2AllCloseKeypointsBecomeLandmarks) {
+  ExpectNearestAreTaken(4.5, true);
+}
 
-TEST(KeyframeInsertion, MakesLandmarksOfTheNearestHundredIfFewAreClose) {
+TEST(KeyframeInsertion, ByTheRuleOfOrbSlam2TheNearestHundredDoIfFewAreClose) {
   ExpectNearestAreTaken(2.2, false);
+}
+
+// More than a hundred are close, but what is far may be all that the next image shows.
+TEST(KeyframeInsertion, MakesLandmarksOfAllKeypointsWithDepth) {
+  const SyntheticWorld world({.depth_share = 0.7});
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5});
+  const SyntheticView view = world.Observe(10);
+  KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
+  request.landmarks.assign(view.points.size(), LandmarkId());
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(made.map, request, world.sensor(), created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  const Keyframe& keyframe = made.map.keyframes().At(id);
+  for (size_t i = 0; i < view.points.size(); ++i) {
+    EXPECT_EQ(keyframe.landmarks[i].IsValid(), view.frame->features.depth[i] > 0.0f);
+  }
+  EXPECT_EQ(CountLandmarks(keyframe), created.size());
 }
 
 TEST(KeyframeInsertion, KnownLandmarksAreObservedAndNotMadeAgain) {

@@ -6,9 +6,14 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <random>
 #include <span>
 #include <utility>
+#include <vector>
 
+#include "camera/point_measurement.h"
+#include "map/landmark_edits.h"
+#include "support/random_geometry.h"
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
 
@@ -132,6 +137,60 @@ TEST(ConfirmedPose, AFrameThatIsTrackedIsNotRelocalised) {
   ASSERT_TRUE(relocalised.found);
   EXPECT_EQ(tracked.found->source, 0u);
   EXPECT_LT(tracked.found->tracking.estimate.inliers, relocalised.found->tracking.estimate.inliers);
+}
+
+// A keyframe at the origin that sees these points, and the search in its own frame from its pose.
+PoseSearch SearchAmong(const std::vector<Eigen::Vector3d>& points) {
+  const Sensor sensor = SyntheticSensor();
+  const auto frame = std::make_shared<Frame>();
+  FrameFeatures& features = frame->features;
+  std::mt19937_64 random(1);
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d measured = ProjectRgbd(sensor.camera, point);
+    features.keypoints.emplace_back().undistorted = measured.head<2>().cast<float>();
+    features.descriptors.push_back({random(), random(), random(), random()});
+    features.right_u.push_back(static_cast<float>(measured.x() - measured.z()));
+    features.depth.push_back(static_cast<float>(point.z()));
+  }
+  features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
+  Map map;
+  const KeyframeId keyframe = map.AddKeyframe(frame, Rigid3());
+  for (uint32_t i = 0; i < points.size(); ++i) {
+    const LandmarkId id = map.AddLandmark(points[i], keyframe);
+    map.AddObservation(id, keyframe, i);
+    UpdateDescriptor(map, id);
+    UpdateViewingGeometry(map, id, sensor.levels);
+  }
+  TheScript() = {};
+  TheScript().first.emplace().landmarks.resize(points.size());
+  const TrackingOptions options;
+  const ObjectOptions objects;
+  const ObjectIndex index;
+  LastFrame last;
+  last.reference = keyframe;
+  return FindConfirmedPose(*frame, map, {sensor, options, objects, index}, last,
+                           std::array<PoseSource*, 1>{&First});
+}
+
+// Landmarks on a narrow strip, such as a skirting board, agree with poses that turn about it. As
+// many in the whole image determine the pose.
+TEST(ConfirmedPose, LandmarksOnANarrowStripDoNotConfirmIt) {
+  RandomGeometry random(1);
+  std::vector<Eigen::Vector3d> spread;
+  std::vector<Eigen::Vector3d> strip;
+  for (int i = 0; i < 40; ++i) {
+    const Eigen::Vector3d place = random.Vector(1.0);
+    spread.push_back(Eigen::Vector3d(0.0, 0.0, 3.0) +
+                     place.cwiseProduct(Eigen::Vector3d(1.2, 0.9, 0.5)));
+    strip.push_back(Eigen::Vector3d(0.8, 0.9, 3.0) +
+                    place.cwiseProduct(Eigen::Vector3d(0.4, 0.03, 0.05)));
+  }
+  const PoseSearch found = SearchAmong(spread);
+  ASSERT_TRUE(found.found);
+  EXPECT_EQ(found.found->tracking.estimate.inliers, 40);
+  const PoseSearch refused = SearchAmong(strip);
+  EXPECT_FALSE(refused.found);
+  EXPECT_EQ(refused.most_unconfirmed, 40);
 }
 
 TEST_F(ConfirmedPoseTest, TellsHowManyLandmarksAnUnconfirmedPoseHad) {

@@ -15,8 +15,8 @@ struct MappingOptions {
   // landmarks.
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
-  MappingRule culling_rule = MappingRule::kHullslam;   // of keyframes
-  MappingRule landmark_rule = MappingRule::kHullslam;  // without depth
+  MappingRule culling_rule = MappingRule::kHullslam;  // of keyframes
+  MappingRule landmark_rule = MappingRule::kHullslam;
   bool final_bundle_adjustment = true;  // adjusts the whole map at the end of the run
   bool compact_keyframes = true;        // those far from the newest one (mapping/old_keyframes.h)
 
