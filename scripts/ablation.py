@@ -16,36 +16,29 @@ that begins with a dash is passed on unchanged (NAME:--threaded). Write "\," for
 --sequence mono_tum=data/fr1_xyz beside --sequence data/fr1_xyz.
 
 In every argument of a run, {seed} is replaced by the run's seed and {sequence} by the folder of its
-sequence. Nothing in a sequential run is random, so repetitions differ only if their input does. For
-a synthetic sequence render it with several seeds (--sequence "desk-{seed}" --common "--masks
-{sequence}/masks"). For a real sequence start each run at another frame (--common "--first {seed}").
+sequence. Sequential runs with the same input are equal, so repetitions need another input: several
+renderings (--sequence "desk-{seed}" --common "--masks {sequence}/masks"), or another first frame
+(--common "--first {seed}").
 
 Each run is stored in OUT/SEQUENCE/NAME/seed-N. A run is skipped if it is complete there and was
 made by the same command and the same program. A run that fails is reported and counted, and is
-repeated when the script is started again. --jobs N makes N runs at once; times of runs are only
-comparable with --jobs 1.
-
-The change of the ATE is that of the geometric mean over pairs of runs with the same sequence and
-seed. p is the probability of a change as large as this or larger if the variants did not differ
-(two-sided sign-flip test of the logarithms). With n pairs it is at least 2 / 2^n, so a few runs
-cannot show a difference.
+repeated when the script is started again. docs/ablation.md explains the table.
 """
 
 import argparse
-import concurrent.futures
 import hashlib
 import json
 import pathlib
 import re
 import shlex
 import statistics
-import subprocess
 import sys
-import threading
 
-from run_errors import InputError
-from run_programs import programs_folder
-from run_statistics import compare, lost_percent, try_read_json, value_at, write
+from paper_tables.engine import LOG, PROGRAMS, last_message, stop_by_signals, work_off
+from paper_tables.figures import lost_percent
+from run_statistics import compare
+from support import (InputError, exit_code, programs_folder, read_text, try_read_json, value_at,
+                     write)
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
 COLUMNS = [  # heading, keys in summary.json, format
@@ -59,8 +52,6 @@ COLUMNS = [  # heading, keys in summary.json, format
     ("tangent px", ("objects", "tangent_mean_px"), ".2f"),
     ("median ms", ("timing", "track_ms", "median"), ".1f"),
 ]
-
-
 ALL = "mean"  # in place of a sequence: all of them together
 
 
@@ -82,24 +73,29 @@ def parse_variant(text):
     return name, arguments
 
 
-def read_variants(path):
-    """The texts of the variants in a file."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from error
-    return [line.strip() for line in lines if line.strip() and not line.strip().startswith("#")]
+def read_variants(arguments):
+    """{name: arguments of the program} of the variants of the file and of the command line."""
+    lines = read_text(arguments.variants).splitlines() if arguments.variants else []
+    texts = [line.strip() for line in lines if line.strip() and not line.strip().startswith("#")]
+    variants = [parse_variant(text) for text in texts + arguments.variant]
+    if not variants:
+        raise InputError(f"{arguments.variants}: has no variant")
+    if len(dict(variants)) != len(variants):
+        raise InputError("two variants have the same name: "
+                         f"{', '.join(name for name, _ in variants)}")
+    return dict(variants)
 
 
 class Sequence:
-    """A sequence, the program that runs on it, and the name of the two in the tables."""
+    """A sequence, the program that runs on it, and the name of the two in the tables and of the folder
+    of its runs."""
 
     def __init__(self, text, default_program):
-        program, equals, path = text.partition("=")
-        is_named = bool(equals) and re.fullmatch(r"[a-z][a-z_]*", program) is not None
-        self.path = pathlib.Path(path if is_named else text)
-        self.program = default_program.with_name(program) if is_named else default_program
-        self.name = name_of(self.path) + (f"-{program}" if is_named else "")
+        match = re.fullmatch(r"([a-z][a-z_]*)=(.*)", text, re.DOTALL)
+        self.path = pathlib.Path(match[2] if match else text)
+        self.program = default_program.with_name(match[1]) if match else default_program
+        name = self.path.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
+        self.name = f"{name}-{match[1]}" if match else name
         if not self.program.is_file():
             raise InputError(f"{self.program}: no such program; build it or give another one by "
                              "--program")
@@ -113,26 +109,15 @@ def parse_common(text):
         raise InputError(f"--common is '{text}': {error}") from error
 
 
-def name_of(sequence):
-    """The name of a sequence in the tables, and of the folder of its runs."""
-    return sequence.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
-
-
-def check_names(sequences):
-    """Each sequence needs a name of its own: its runs are stored under it."""
+def read_sequences(arguments):
+    """The sequences. Each needs a name of its own: its runs are stored under it."""
     known = {}
-    for sequence in sequences:
+    for sequence in [Sequence(text, arguments.program) for text in arguments.sequence]:
         other = known.setdefault(sequence.name, sequence)
         if other is not sequence:
             raise InputError(f"{other.path} and {sequence.path} have the same name "
                              f"'{sequence.name}'; use another --out for one of them")
-
-
-def fingerprint(command):
-    """A hash of the command and the program's bytes. If it changes, a finished run is repeated."""
-    program = pathlib.Path(command[0])
-    content = program.read_bytes() if program.is_file() else b""
-    return hashlib.sha256(content + json.dumps(command).encode()).hexdigest()
+    return list(known.values())
 
 
 def run_once(command, folder, seconds):
@@ -140,81 +125,64 @@ def run_once(command, folder, seconds):
 
     The error is empty if the run succeeded.
     """
-    mark = fingerprint(command)
-    record, summary = try_read_json(folder / RECORD), try_read_json(folder / "summary.json")
+    program = pathlib.Path(command[0]).read_bytes()
+    mark = hashlib.sha256(program + json.dumps(command).encode()).hexdigest()
+    record, summary = (try_read_json(folder / name) for name in (RECORD, "summary.json"))
     if record and record.get("fingerprint") == mark and summary is not None:
         return summary, ""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / RECORD).unlink(missing_ok=True)
-    with (folder / "log.txt").open("w", encoding="utf-8") as log:
-        log.write(shlex.join(command) + "\n")
-        log.flush()
-        try:
-            code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False,
-                                  timeout=seconds).returncode
-        except subprocess.TimeoutExpired:
-            return None, f"not finished after {seconds:.0f} s"
-        except OSError as error:
-            raise InputError(f"{command[0]}: {error.strerror}") from error
-    summary = try_read_json(folder / "summary.json")
+    code = PROGRAMS.run(command, seconds, folder / LOG)
+    if code is None:
+        return None, f"not finished after {seconds:.0f} s"
     if code == 2:  # bad usage or input: all other runs would fail too
-        last = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").splitlines()[-1]
-        raise InputError(f"{shlex.join(command)}: {last}")
+        raise InputError(f"{shlex.join(command)}: {last_message(folder / LOG)}")
+    summary = try_read_json(folder / "summary.json")
     if code != 0 or summary is None:
         return None, f"exit code {code}" if code else "no summary.json"
-    (folder / RECORD).write_text(json.dumps({"fingerprint": mark, "command": command}) + "\n",
-                                 encoding="utf-8")
+    write(folder / RECORD, json.dumps({"fingerprint": mark, "command": command}) + "\n")
     return summary, ""
 
 
+def figure(values):
+    """Mean, sample standard deviation (0 for a single run) and the known ones of some values."""
+    values = [value for value in values if value is not None]
+    return {"mean": statistics.fmean(values) if values else None,
+            "sd": statistics.stdev(values) if len(values) > 1 else 0.0, "values": values}
+
+
 def collect(summaries):
-    """Mean, sample standard deviation (0 for a single run) and values of every column."""
-    row = {}
-    for heading, keys, _ in COLUMNS:
-        found = [value_at(summary, keys) if keys else lost_percent(summary)
-                 for summary in summaries]
-        values = [value for value in found if value is not None]
-        row[heading] = {"mean": statistics.fmean(values) if values else None,
-                        "sd": statistics.stdev(values) if len(values) > 1 else 0.0,
-                        "values": values}
-    return row
+    """The figures of every column."""
+    return {heading: figure([value_at(summary, *keys) if keys else lost_percent(summary)
+                             for summary in summaries]) for heading, keys, _ in COLUMNS}
 
 
 def mean_of(results):
     """The figures of a variant on all sequences: the means of the means, each sequence counted
     once. A figure that a sequence does not have has no mean."""
-    row = {}
-    for heading, _, _ in COLUMNS:
-        means = [result["figures"][heading]["mean"] for result in results]
-        is_known = bool(means) and None not in means
-        row[heading] = {"mean": statistics.fmean(means) if is_known else None, "sd": 0.0,
-                        "values": []}
-    return row
+    means = {heading: [result["figures"][heading]["mean"] for result in results]
+             for heading, _, _ in COLUMNS}
+    return {heading: {**figure([] if None in found else found), "sd": 0.0, "values": []}
+            for heading, found in means.items()}
 
 
 def cell(entry, form, with_deviation):
     if entry["mean"] is None:
         return "-"
-    text = format(entry["mean"], form)
-    if with_deviation and len(entry["values"]) > 1:
-        text += f" ± {format(entry['sd'], form)}"
-    return text
+    has_deviation = with_deviation and len(entry["values"]) > 1
+    return format(entry["mean"], form) + (f" ± {format(entry['sd'], form)}" if has_deviation else "")
 
 
 def with_means(results):
     """The results, followed by one per variant for all sequences if there are several and the
     variant has run on all of them."""
-    sequences = list(dict.fromkeys(result["sequence"] for result in results))
-    means = []
+    means, count = [], len({result["sequence"] for result in results})
     for variant in dict.fromkeys(result["variant"] for result in results):
-        of_variant = [result for result in results if result["variant"] == variant]
-        if len(sequences) > 1 and len(of_variant) == len(sequences):
-            means.append({"sequence": ALL, "variant": variant,
-                          "runs": sum(result["runs"] for result in of_variant),
-                          "failed": sum(result["failed"] for result in of_variant),
-                          "ates": {key: ate for result in of_variant
-                                   for key, ate in result["ates"].items()},
-                          "figures": mean_of(of_variant)})
+        found = [result for result in results if result["variant"] == variant]
+        if len(found) == count > 1:
+            means.append({"sequence": ALL, "variant": variant, "figures": mean_of(found),
+                          **{key: sum(result[key] for result in found) for key in ("runs", "failed")},
+                          "ates": {key: ate for result in found for key, ate in result["ates"].items()}})
     return results + means
 
 
@@ -254,7 +222,7 @@ def run_seed(arguments, sequence, name, settings, seed):
         print(f"{sequence.name} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
               file=sys.stderr)
     else:
-        ate = value_at(summary, ("trajectory", "ate_rmse_m"))
+        ate = value_at(summary, "trajectory", "ate_rmse_m")
         print(f"{sequence.name} {name} seed {seed}: ATE "
               f"{'unknown' if ate is None else f'{ate:.4f} m'}", flush=True)
     return summary, failure
@@ -264,7 +232,7 @@ def result_of(sequence, name, settings, runs):
     """The result of a variant on a sequence. `runs` is {seed: (summary, error)}."""
     good = {seed: summary for seed, (summary, failure) in runs.items() if not failure}
     failures = [f"seed {seed}: {failure}" for seed, (_, failure) in runs.items() if failure]
-    ates = {seed: value_at(summary, ("trajectory", "ate_rmse_m")) for seed, summary in good.items()}
+    ates = {seed: value_at(summary, "trajectory", "ate_rmse_m") for seed, summary in good.items()}
     return {"sequence": sequence.name, "variant": name, "arguments": settings,
             "runs": len(good), "failed": len(failures), "failures": failures,
             "ates": {f"{sequence.name} {seed}": ate for seed, ate in ates.items()
@@ -272,35 +240,32 @@ def result_of(sequence, name, settings, runs):
             "figures": collect(good.values())}
 
 
-def run_all(arguments, sequences, variants):
-    """Makes all runs, `arguments.jobs` at once, and returns the results in order. The tables are
-    written after each variant, so that they can be read while others run."""
+def ablate(arguments):
+    """Makes all runs, `arguments.jobs` at once. The tables are written after each variant, so that they
+    can be read while others run. Returns 1 if a run has failed."""
+    arguments.common = parse_common(arguments.common)
+    sequences, variants = read_sequences(arguments), read_variants(arguments)
     seeds = range(arguments.first_seed, arguments.first_seed + arguments.seeds)
-    results, failed = [], threading.Event()
+    cells = [(sequence, *variant) for sequence in sequences for variant in variants.items()]
+    runs, results = {}, []
 
-    def run(*job):
-        if failed.is_set():  # bad input has ended the script
-            return None, "not begun"
-        try:
-            return run_seed(arguments, *job)
-        except BaseException:
-            failed.set()
-            raise
+    def make(index, seed):
+        runs[index, seed] = run_seed(arguments, *cells[index], seed)
 
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        jobs = {(sequence.name, name, seed): pool.submit(run, sequence, name, settings, seed)
-                for sequence in sequences for name, settings in variants for seed in seeds}
-        try:
-            for sequence in sequences:
-                for name, settings in variants:
-                    runs = {seed: jobs[sequence.name, name, seed].result() for seed in seeds}
-                    results.append(result_of(sequence, name, settings, runs))
-                    write(arguments.out / "ablation.md", table(results))
-                    write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
-        except BaseException:  # also Ctrl-C
-            failed.set()
-            raise
-    return results
+    def update():
+        known = len(results)
+        for index in range(known, len(cells)):
+            if not all((index, seed) in runs for seed in seeds):
+                break
+            results.append(result_of(*cells[index], {seed: runs[index, seed] for seed in seeds}))
+        if len(results) > known:
+            write(arguments.out / "ablation.md", table(results))
+            write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
+
+    work_off({(index, seed): (lambda index=index, seed=seed: make(index, seed), ())
+              for index in range(len(cells)) for seed in seeds}, arguments.jobs, update)
+    print(table(results), end="")
+    return int(any(result["failed"] for result in results))
 
 
 def parse_arguments():
@@ -342,23 +307,8 @@ def parse_arguments():
 
 def main():
     arguments = parse_arguments()
-    try:
-        sequences = [Sequence(text, arguments.program) for text in arguments.sequence]
-        texts = read_variants(arguments.variants) if arguments.variants else []
-        variants = [parse_variant(text) for text in texts + arguments.variant]
-        names = [name for name, _ in variants]
-        if not variants:
-            raise InputError(f"{arguments.variants}: has no variant")
-        if len(set(names)) != len(names):
-            raise InputError(f"two variants have the same name: {', '.join(names)}")
-        check_names(sequences)
-        arguments.common = parse_common(arguments.common)
-        results = run_all(arguments, sequences, variants)
-    except (InputError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(table(results), end="")
-    return 1 if any(result["failed"] for result in results) else 0
+    stop_by_signals()
+    return exit_code(ablate, arguments, failure=2)
 
 
 if __name__ == "__main__":

@@ -21,89 +21,53 @@ Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped,
 
 import argparse
 import json
-import os
 import pathlib
 import shutil
-import signal
 import sys
 
-from python_packages import require
+from support import InputError, exit_code, programs_folder, require, try_read_json, write
 
 require("numpy", "yaml")
-from paper_tables.cases import (CasePlanner, find_sequence, needed_renderings,  # noqa: E402
-                                read_cases, render)
+from paper_tables.definitions import read_definitions  # noqa: E402
+from paper_tables.engine import (PLAN, make_all, read_results, result_file,  # noqa: E402
+                                 stop_by_signals, table_lock)
+from paper_tables.files import markdown_lines  # noqa: E402
 from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
                                frame_line, run_report)
-from paper_tables.job import Stopped  # noqa: E402
-from paper_tables.markdown import grid_lines  # noqa: E402
-from paper_tables.plan import Tools, result_file  # noqa: E402
-from paper_tables.report import REPORT_VERSION, read_report  # noqa: E402
-from paper_tables.workflow import make_all, read_results, table_lock  # noqa: E402
-from run_errors import InputError, exit_code  # noqa: E402
-from run_programs import programs_folder  # noqa: E402
-from run_statistics import try_read_json, write  # noqa: E402
+from paper_tables.plan import Planner, Request, Tools, add_case, chosen  # noqa: E402
+from paper_tables.sequences import call_renderer, find_sequence, needed_renderings  # noqa: E402
+from paper_tables.tables import REPORT_VERSION, read_report  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
 TOP = SCRIPTS.parent
 ACCEPTED = TOP / "docs" / "results" / "accuracy.json"
-PLAN = "plan.json"
-ESTIMATORS = ("rgbd_tum", "mono_tum", "rgbd_icl", "mono_icl")
 
 
-class BuildTools(Tools):
-    """The programs of the build that is measured. `others` has those that evaluate and render, which
-    should be the same for all builds that are compared."""
-
-    def __init__(self, programs, others, scripts, config):
-        super().__init__(programs, scripts, config)
-        self.others = others
-
-    def path(self, name):
-        if name in ESTIMATORS or self.others == self.programs:
-            return super().path(name)
-        return Tools(self.others, self.scripts, self.config).path(name)
-
-
-def config_of(programs):
-    """The settings that belong to a build: those of its checkout, else those of this one."""
-    chosen = os.environ.get("HULLSLAM_CONFIG")
-    own = programs.parents[2] / "config" if len(programs.parents) > 2 else None
-    return pathlib.Path(chosen or (own if own and own.is_dir() else TOP / "config")).resolve()
-
-
-def chosen_names(text, known, option):
-    """The names in a text like a,b, in the order of `known`."""
-    names = known if text is None else [name.strip() for name in text.split(",") if name.strip()]
-    for name in names or [""]:
-        if name not in known:
-            raise InputError(f"{option}: '{name}' is unknown, expected some of: {', '.join(known)}")
-    return [name for name in known if name in names]
-
-
-# ---- what is run
-
-
-def make_renderings(cases, chosen, arguments, tools):
-    needed = needed_renderings(cases, chosen, arguments.renderings)
+def make_renderings(definitions, cases, arguments, tools):
+    needed = needed_renderings(definitions, cases, arguments.renderings)
     for index, (folder, options) in enumerate(needed.items(), 1):
         print(f"rendering {index} of {len(needed)}: {folder}", file=sys.stderr, flush=True)
-        render(folder, options, tools.path("make_synthetic"))
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        call_renderer(tools.path("make_synthetic"), options)
 
 
-def make_plan(cases, chosen, arguments, tools):
+def make_plan(definitions, cases, arguments, tools):
     """(plan, names of the recordings that are absent). --quick takes one run of each case, mode and
     variant."""
-    planner, absent = CasePlanner(cases, tools, arguments.timeout), {}
-    for case in chosen:
-        for seed in case.seeds[:1] if arguments.quick else case.seeds:
+    planner = Planner(Request(definitions, [], timeout=arguments.timeout), tools)
+    absent, most = {}, 1 if arguments.quick else None
+    for case in cases:
+        for seed in case.seeds[:most]:
             sequence = find_sequence(case, seed, arguments.data, arguments.renderings, tools.config)
             if sequence is None:
                 absent.setdefault(case.sequence, []).append(case.name)
-                continue
-            planner.add(case, sequence, case.first[:1] if arguments.quick else case.first)
+            else:
+                add_case(planner, case, sequence, case.first[:most])
     for sequence, names in absent.items():
         print(f"note: {arguments.data / sequence} does not exist, so these cases are skipped: "
               f"{', '.join(names)}; --data says where recordings are", file=sys.stderr)
+    if not planner.runs:
+        raise InputError("there is nothing to run: no sequence of these cases is there")
     return planner.plan(), absent
 
 
@@ -125,48 +89,6 @@ def make_report(plan, out):
     return {"version": REPORT_VERSION, "git": builds, "runs": runs}
 
 
-# ---- what is told
-
-
-def build_name(report):
-    return ", ".join(report.get("git") or ["unknown"])
-
-
-def compare(old, new, out):
-    """Prints and writes the comparison. Returns whether something got worse."""
-    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
-                            new["runs"])
-    if not comparison.common:
-        raise InputError("no run is in both reports, so there is nothing to compare")
-    told = [*disaster_lines(comparison), *family_lines(comparison)]
-    counts = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])
-              for report in (old, new)]
-    others = comparison.other_input()
-    if others:
-        counts.append(f"note: the images or settings of {len(others)} runs are others than then, "
-                      f"such as {others[0]}")
-    changed = case_grid(comparison, only_changed=True)
-    head = [f"# Accuracy: {build_name(old)} -> {build_name(new)}", "",
-            *(f"* {line}" for line in [*counts, *told]), ""]
-    write(out / "accuracy.md", "\n".join([*head, *grid_lines(case_grid(comparison), 2)]))
-    lines = [*counts, *told]
-    if changed.rows:
-        changed.title = "What changed by more than its spread"
-        lines += ["", *grid_lines(changed, 2)]
-    print("\n".join(lines))
-    print("something got worse" if comparison.is_worse() else "nothing got worse")
-    return comparison.is_worse()
-
-
-def accept(report, absent, arguments):
-    if absent:
-        raise InputError(f"--accept: {', '.join(absent)} is absent, and the accepted figures must have "
-                         "all cases")
-    ACCEPTED.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(arguments.out / "accuracy.json", ACCEPTED)
-    print(f"{ACCEPTED}: {len(report['runs'])} runs of {build_name(report)} are accepted")
-
-
 def json_text(report):
     """One line per run, so that a change of the accepted figures can be read as a difference."""
     runs = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rounded(run))}"
@@ -182,40 +104,69 @@ def rounded(value):
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
+def build_name(report):
+    return ", ".join(report.get("git") or ["unknown"])
+
+
+def compare(old, new, out):
+    """Prints and writes the comparison. Returns whether something got worse."""
+    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
+                            new["runs"])
+    if not comparison.common:
+        raise InputError("no run is in both reports, so there is nothing to compare")
+    lines = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])
+             for report in (old, new)]
+    others = comparison.other_input()
+    if others:
+        lines.append(f"note: the images or settings of {len(others)} runs are others than then, "
+                     f"such as {others[0]}")
+    lines += [*disaster_lines(comparison), *family_lines(comparison)]
+    head = [f"# Accuracy: {build_name(old)} -> {build_name(new)}", "",
+            *(f"* {line}" for line in lines), ""]
+    write(out / "accuracy.md", "\n".join([*head, *markdown_lines(case_grid(comparison), 2)]))
+    changed = case_grid(comparison, only_changed=True)
+    if changed.rows:
+        changed.title = "What changed by more than its spread"
+        lines += ["", *markdown_lines(changed, 2)]
+    print("\n".join(lines))
+    print("something got worse" if comparison.is_worse() else "nothing got worse")
+    return comparison.is_worse()
+
+
+def accept(report, absent, out):
+    if absent:
+        raise InputError(f"--accept: {', '.join(absent)} is absent, and the accepted figures must have "
+                         "all cases")
+    ACCEPTED.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(out / "accuracy.json", ACCEPTED)
+    print(f"{ACCEPTED}: {len(report['runs'])} runs of {build_name(report)} are accepted")
+
+
 def gate(arguments):
-    """Makes all runs and compares them. Returns whether something got worse."""
-    programs = arguments.programs.resolve()
-    tools = BuildTools(programs, arguments.tools.resolve(), SCRIPTS, config_of(programs))
-    cases = read_cases(arguments.definitions)
-    chosen = [cases.cases[name] for name in chosen_names(arguments.only, list(cases.cases), "--only")]
-    old = None
-    if arguments.compare or ACCEPTED.is_file():
-        old = read_report(arguments.compare or ACCEPTED)
-    make_renderings(cases, chosen, arguments, tools)
-    plan, absent = make_plan(cases, chosen, arguments, tools)
-    if not plan["runs"]:
-        raise InputError("there is nothing to run: no sequence of these cases is there")
+    """Makes all runs and compares them. Returns 1 if something got worse."""
+    out = arguments.out
+    tools = Tools(arguments.programs.resolve(), others=arguments.tools.resolve())
+    definitions = read_definitions(arguments.definitions, "cases")
+    cases = [definitions.cases[name] for name in chosen(arguments.only, definitions.cases, "--only")]
+    old = read_report(arguments.compare or ACCEPTED) if arguments.compare or ACCEPTED.is_file() else None
+    make_renderings(definitions, cases, arguments, tools)
+    plan, absent = make_plan(definitions, cases, arguments, tools)
     if arguments.list:
-        list_runs(plan, arguments.out)
-        return False
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    with table_lock(arguments.out):
-        write(arguments.out / PLAN, json.dumps(plan, indent=1) + "\n")
+        list_runs(plan, out)
+        return 0
+    out.mkdir(parents=True, exist_ok=True)
+    with table_lock(out):
+        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
         if not arguments.so_far:
-            jobs = arguments.jobs or os.cpu_count()
-            make_all(plan, PLAN, arguments.out, jobs, None, arguments.quiet)
-        report = make_report(plan, arguments.out)
-        write(arguments.out / "accuracy.json", json_text(report))
-        is_worse = old is not None and compare(old, json.loads(json_text(report)), arguments.out)
+            make_all(plan, out, arguments.jobs, is_quiet=arguments.quiet)
+        report = make_report(plan, out)
+        write(out / "accuracy.json", json_text(report))
+        is_worse = old is not None and compare(old, json.loads(json_text(report)), out)
     if old is None:
         print(f"note: {ACCEPTED} does not exist, so nothing is compared", file=sys.stderr)
     if arguments.accept:
-        accept(report, absent, arguments)
-        return False
-    return is_worse
-
-
-# ---- arguments
+        accept(report, absent, out)
+    return int(is_worse and not arguments.accept)
 
 
 def parse_arguments(words):
@@ -262,19 +213,10 @@ def parse_arguments(words):
     return arguments
 
 
-def stop(number, _):
-    """Ends the jobs, as Ctrl-C does."""
-    raise Stopped(f"ended by {signal.Signals(number).name}; start again to go on")
-
-
 def main(words=None):
     arguments = parse_arguments(words)
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
-            signal.signal(number, stop)
-    worse = []
-    code = exit_code(lambda given: worse.append(gate(given)), arguments, failures=(Stopped, OSError))
-    return 1 if worse == [True] else code
+    stop_by_signals()
+    return exit_code(gate, arguments)
 
 
 if __name__ == "__main__":

@@ -26,13 +26,14 @@ import sys
 import tempfile
 import zlib
 
-import numpy as np
+from support import InputError, exit_code, read_trajectory, require
 
-from disturbances import DISTURBANCES
-from leave_and_return import link
-from run_files import InputError, read_trajectory
-from tum_and_icl import lists_of, read_frames
-from yolo_masks import mask_files, print_masks, read_masks
+require("numpy")
+import numpy as np  # noqa: E402
+
+from disturbances import DISTURBANCES  # noqa: E402
+from tum_and_icl import link, lists_of, read_frames  # noqa: E402
+from yolo_masks import mask_files, print_masks, read_masks  # noqa: E402
 
 
 class Degrader:
@@ -188,7 +189,7 @@ def interpolate(stamps, poses, time):
 
 
 def degrade(arguments):
-    """Writes OUT as a whole. Returns the number of its images."""
+    """Writes OUT as a whole."""
     out = arguments.out.resolve()
     if out.exists() and not out.is_dir():
         raise InputError(f"{out}: exists and is no folder")
@@ -204,7 +205,7 @@ def degrade(arguments):
         content.rename(out)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
-    return len(degrader.frames)
+    print(f"{arguments.out}: {len(degrader.frames)} images")
 
 
 def parse(words):
@@ -232,18 +233,13 @@ def parse(words):
 
 
 def main(words=None):
-    arguments = parse(words)
     try:
-        images = degrade(arguments)
-    except ImportError:
-        print("error: changed images need OpenCV for Python (Debian: python3-opencv)",
-              file=sys.stderr)
+        return exit_code(degrade, parse(words), failure=2)
+    except (ImportError, ValueError) as error:
+        told = "changed images need OpenCV for Python (Debian: python3-opencv)" \
+            if isinstance(error, ImportError) else error
+        print(f"error: {told}", file=sys.stderr)
         return 2
-    except (InputError, OSError, ValueError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(f"{arguments.out}: {images} images")
-    return 0
 
 
 if __name__ == "__main__":

@@ -18,62 +18,14 @@ Exit codes: 0 done, 2 bad usage or input.
 
 import argparse
 import pathlib
-import shutil
-import struct
 import sys
-import zlib
 
-import numpy as np
+from support import InputError, exit_code, require
+from tum_and_icl import link, read_rows
 
-from run_files import InputError
-
-
-def read_rows(path):
-    """Stamp and the other words of each line of a TUM list."""
-    rows = []
-    for count, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        words = line.split()
-        if not words or words[0].startswith("#"):
-            continue
-        try:
-            rows.append((float(words[0]), words[1:]))
-        except ValueError as error:
-            raise InputError(f"{path}:{count}: expected a time stamp") from error
-        if len(words) < 2 or not np.isfinite(rows[-1][0]):
-            raise InputError(f"{path}:{count}: expected a time stamp and more")
-    if not rows:
-        raise InputError(f"{path}: no lines")
-    return rows
-
-
-def png_size(path):
-    with path.open("rb") as file:
-        head = file.read(24)
-    if head[:8] != b"\x89PNG\r\n\x1a\n" or len(head) < 24:
-        raise InputError(f"{path}: not a PNG image")
-    return struct.unpack(">II", head[16:24])
-
-
-def write_png(path, size, bits, channels, value):
-    """An image of one colour."""
-    row = b"\0" + value.to_bytes(bits // 8, "big") * channels * size[0]
-
-    def chunk(name, data):
-        return (struct.pack(">I", len(data)) + name + data
-                + struct.pack(">I", zlib.crc32(name + data)))
-
-    header = struct.pack(">IIBBBBB", *size, bits, 2 if channels == 3 else 0, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
-                     + chunk(b"IDAT", zlib.compress(row * size[1])) + chunk(b"IEND", b""))
-
-
-def link(source, target):
-    """Makes a link, or a copy if the file system has no links."""
-    source = source.resolve(strict=True)
-    try:
-        target.symlink_to(source)
-    except OSError:
-        shutil.copy(source, target)
+require("numpy", "PIL")
+import numpy as np  # noqa: E402
+import PIL.Image  # noqa: E402
 
 
 class Writer:
@@ -97,25 +49,31 @@ class Writer:
         else:
             target.write_text("")
 
-    def add_frames(self, sequence, rows, shift):
-        """`rows` are those of rgb.txt."""
+    def add_frames(self, sequence, rows, depth, shift):
+        """`rows` are those of rgb.txt, `depth` those of depth.txt."""
+        for stamp, words in depth:
+            self.add_image("depth", stamp + shift, sequence / words[0])
         for stamp, words in rows:
             self.add_image("rgb", stamp + shift, sequence / words[0])
             self.add_masks(stamp + shift,
                            sequence / "masks" / (pathlib.PurePath(words[0]).stem + ".txt"))
-
-    def add_depth(self, sequence, rows, shift):
-        for stamp, words in rows:
-            self.add_image("depth", stamp + shift, sequence / words[0])
 
     def finish(self):
         for kind, lines in self.lists.items():
             (self.out / f"{kind}.txt").write_text("# timestamp filename\n" + "".join(lines))
 
 
+def size_of_image(path):
+    try:
+        with PIL.Image.open(path) as image:
+            return image.size
+    except PIL.UnidentifiedImageError as error:
+        raise InputError(f"{path}: not a PNG image") from error
+
+
 def add_blank_frames(writer, stamps, size):
-    write_png(writer.out / "blank_rgb.png", size, 8, 3, 128)
-    write_png(writer.out / "blank_depth.png", size, 16, 1, 0)
+    PIL.Image.new("RGB", size, (128, 128, 128)).save(writer.out / "blank_rgb.png")
+    PIL.Image.new("I;16", size, 0).save(writer.out / "blank_depth.png")
     for stamp in stamps:
         writer.add_image("rgb", stamp, writer.out / "blank_rgb.png")
         writer.add_image("depth", stamp, writer.out / "blank_depth.png")
@@ -127,7 +85,7 @@ def add_other_frames(writer, stamps, other):
     rows, depth = read_rows(other / "rgb.txt"), read_rows(other / "depth.txt")
     times = np.array([stamp for stamp, _ in depth])
     for new, (stamp, words) in zip(stamps, rows):
-        writer.add_frames(other, [(stamp, words)], new - stamp)
+        writer.add_frames(other, [(stamp, words)], [], new - stamp)
         nearest = int(np.argmin(np.abs(times - stamp)))
         if abs(times[nearest] - stamp) < 0.02:
             writer.add_image("depth", new, other / depth[nearest][1][0])
@@ -181,22 +139,21 @@ def make(arguments):
     if arguments.other and len(read_rows(arguments.other / "rgb.txt")) < count:
         raise InputError(f"{arguments.other}: has fewer than {count} frames")
     writer = Writer(out)
-    writer.add_frames(sequence, before.rows(rows), 0.0)
-    writer.add_depth(sequence, before.rows(depth), 0.0)
+    writer.add_frames(sequence, before.rows(rows), before.rows(depth), 0.0)
     between = before.rows(rows)[-1][0] + interval * np.arange(1, count + 1)
     if arguments.other:
         add_other_frames(writer, between, arguments.other)
     else:
-        add_blank_frames(writer, between, png_size(sequence / rows[0][1][0]))
-    writer.add_frames(sequence, after.rows(rows), after.shift)
-    writer.add_depth(sequence, after.rows(depth), after.shift)
+        add_blank_frames(writer, between, size_of_image(sequence / rows[0][1][0]))
+    writer.add_frames(sequence, after.rows(rows), after.rows(depth), after.shift)
     writer.finish()
     for name in ("camera.yaml", "groundtruth_objects.json"):
         if (sequence / name).exists():
             link(sequence / name, out / name)
     if (sequence / "groundtruth.txt").exists():
         write_groundtruth(sequence, out, parts, between, interval)
-    return len(before.rows(rows)), len(after.rows(rows))
+    print(f"{out}: {len(before.rows(rows))} frames, {count} of something else, "
+          f"{len(after.rows(rows))} frames")
 
 
 def main(words=None):
@@ -217,13 +174,7 @@ def main(words=None):
         parser.error("--again and --at exclude each other")
     if arguments.blank < 1:
         parser.error("--blank must be 1 or more")
-    try:
-        before, after = make(arguments)
-    except (InputError, OSError, ValueError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(f"{arguments.out}: {before} frames, {arguments.blank} of something else, {after} frames")
-    return 0
+    return exit_code(make, arguments, failure=2)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ import pathlib
 import sys
 import time
 
-from run_errors import InputError, exit_code, one_line
+from support import InputError, exit_code, one_line
 from run_frames import VideoFrames, colour_images, orientation_of, turn, turn_back
 
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them

@@ -26,13 +26,11 @@ import subprocess
 import sys
 import tempfile
 
+from support import InputError
+
 TOP = pathlib.Path(__file__).resolve().parent.parent
 MARK = "copy_of_plant_defects"  # a file in the copy
 KEYS = {"name", "file", "find", "replace", "test"}
-
-
-class InputError(Exception):
-    """An error that the user can correct."""
 
 
 def read_defects(path, names):

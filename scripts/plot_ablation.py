@@ -15,15 +15,14 @@ import pathlib
 import re
 import sys
 
-from python_packages import require
+from support import InputError, exit_code, one_line, read_text, require
 
 require("numpy", "matplotlib")
 import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-from plot_labels import plain  # noqa: E402
-from run_files import InputError, one_line  # noqa: E402
+plt.rcParams["text.parse_math"] = False  # a `$` in a name is a dollar
 
 COMPLETE = 0.99  # a variant that tracks at least this share of the best one's frames
 
@@ -33,7 +32,7 @@ def read_points(folder):
     path = folder / "ablation.json"
     curves, most = {}, {}
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
+        results = json.loads(read_text(path))
         for result in results:
             tracked = result["figures"]["tracked"]["mean"] or 0.0
             most[result["sequence"]] = max(most.get(result["sequence"], 0.0), tracked)
@@ -46,7 +45,7 @@ def read_points(folder):
             is_complete = not result["failed"] and tracked >= COMPLETE * most[result["sequence"]]
             curves.setdefault(result["sequence"], {}).setdefault(name[1], []).append(
                 (float(name[2]), 1000.0 * ate["mean"], 1000.0 * ate["sd"], is_complete))
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         reason = f"no key {error}" if isinstance(error, KeyError) else one_line(error)
         raise InputError(f"{path}: not a valid ablation.json: {reason}") from error
     if not curves:
@@ -58,7 +57,7 @@ def read_points(folder):
 def draw_panel(axes, sequence, curves, x_label):
     for name, points in curves.items():
         numbers, errors, deviations, complete = zip(*points)
-        line = axes.errorbar(numbers, errors, yerr=deviations, capsize=3, label=plain(name))
+        line = axes.errorbar(numbers, errors, yerr=deviations, capsize=3, label=one_line(name, 40))
         colour = line[0].get_color()
         for number, error, is_complete in zip(numbers, errors, complete):
             axes.plot(number, error, "o", color=colour, ms=6,
@@ -69,11 +68,21 @@ def draw_panel(axes, sequence, curves, x_label):
     axes.minorticks_off()
     axes.invert_xaxis()
     axes.set_ylim(bottom=0.0)
-    axes.set_title(plain(sequence))
+    axes.set_title(one_line(sequence, 40))
     axes.set_xlabel(x_label)
     axes.set_ylabel("ATE RMSE, mm")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
+
+
+def draw(arguments):
+    panels = [panel for folder in arguments.folders for panel in read_points(folder).items()]
+    figure, axes = plt.subplots(1, len(panels), figsize=(5.5 * len(panels), 4.0), squeeze=False,
+                                layout="constrained")
+    for panel, (sequence, curves) in zip(axes[0], panels):
+        draw_panel(panel, sequence, curves, arguments.x)
+    figure.savefig(arguments.output, dpi=90)
+    print(arguments.output)
 
 
 def main():
@@ -83,19 +92,7 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("ablation.png"),
                         help="file of the picture (default ablation.png)")
     parser.add_argument("--x", default="number", help="label of the x axis: what the numbers are")
-    arguments = parser.parse_args()
-    try:
-        panels = [panel for folder in arguments.folders for panel in read_points(folder).items()]
-        figure, axes = plt.subplots(1, len(panels), figsize=(5.5 * len(panels), 4.0), squeeze=False,
-                                    layout="constrained")
-        for panel, (sequence, curves) in zip(axes[0], panels):
-            draw_panel(panel, sequence, curves, arguments.x)
-        figure.savefig(arguments.output, dpi=90)
-    except (InputError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(arguments.output)
-    return 0
+    return exit_code(draw, parser.parse_args(), failure=2)
 
 
 if __name__ == "__main__":

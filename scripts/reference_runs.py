@@ -23,12 +23,9 @@ import subprocess
 import sys
 import tempfile
 
-TOP = pathlib.Path(__file__).resolve().parent.parent
+from support import InputError, exit_code, programs_folder, read_json
+
 HASHED = ("trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "saved.map")
-
-
-class InputError(Exception):
-    """An error that the user can correct."""
 
 
 def known_pose_run(folder, masks):
@@ -128,13 +125,8 @@ def describe_differences(before, after):
 
 
 def read_reference(path):
-    try:
-        reference = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: not valid JSON: {error}") from error
-    if not isinstance(reference, dict) or not all(isinstance(v, dict) for v in reference.values()):
+    reference = read_json(path)
+    if not all(isinstance(hashes, dict) for hashes in reference.values()):
         raise InputError(f"{path}: expected hashes by run and file, as `store` writes them")
     return reference
 
@@ -146,7 +138,7 @@ def parse_arguments():
     parser.add_argument("reference", type=pathlib.Path, help="JSON file with the hashes")
     parser.add_argument("--sequence", type=pathlib.Path, help="RGB-D sequence in TUM's format")
     parser.add_argument("--masks", type=pathlib.Path, help="masks of this sequence")
-    parser.add_argument("--programs", type=pathlib.Path, default=TOP / "build/release/bin",
+    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(),
                         help="folder of the programs (default: build/release/bin)")
     parser.add_argument("--only", metavar="RUN", nargs="+", help="make only these runs")
     parser.add_argument("--work", type=pathlib.Path,
@@ -179,11 +171,7 @@ def execute(arguments):
 
 
 def main():
-    try:
-        return execute(parse_arguments())
-    except (InputError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    return exit_code(execute, parse_arguments(), failure=2)
 
 
 if __name__ == "__main__":

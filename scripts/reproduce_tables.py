@@ -27,54 +27,26 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import sys
 
-from python_packages import require
+from support import InputError, Stopped, exit_code, programs_folder, read_json, require, write
 
 require("numpy", "matplotlib", "yaml")
-from paper_tables.compare import compare_reports, comparison_grid, comparison_json  # noqa: E402
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
-from paper_tables.job import Stopped  # noqa: E402
-from paper_tables.latex import latex  # noqa: E402
-from paper_tables.markdown import grid_lines, markdown  # noqa: E402
+from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
+                                 result_file, stop_by_signals, table_lock)
+from paper_tables.files import latex, markdown, markdown_lines  # noqa: E402
 from paper_tables.page import page, shown_runs  # noqa: E402
-from paper_tables.plan import DIGITS, Request, Tools, make_plan, result_file  # noqa: E402
-from paper_tables.report import Report, read_report  # noqa: E402
-from paper_tables.sequences import (find_sequences, in_order, read_list,  # noqa: E402
-                                    read_sequence)
-from paper_tables.suite import read_suite, suite_file  # noqa: E402
-from paper_tables.workflow import (make_all, read_results, snakemake_command,  # noqa: E402
-                                   table_lock)
-from run_errors import InputError, exit_code  # noqa: E402
-from run_files import read_json  # noqa: E402
-from run_programs import programs_folder  # noqa: E402
-from run_statistics import write  # noqa: E402
+from paper_tables.plan import Request, Tools, chosen, make_plan  # noqa: E402
+from paper_tables.sequences import (find_sequences, in_order, read_list, read_sequence,  # noqa: E402
+                                    read_suite, suite_file)
+from paper_tables.tables import Report, compare_reports, read_report  # noqa: E402
+from paper_tables.text import comparison_grid  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
 OWN = SCRIPTS / "paper_tables"
-PLAN = "plan.json"
 QUICK_SEQUENCES, QUICK_FRAMES = 2, 40
-
-
-def find_config():
-    """The folder of the settings files and presets."""
-    return pathlib.Path(os.environ.get("HULLSLAM_CONFIG") or SCRIPTS.parent / "config").resolve()
-
-
-# ---- what to run
-
-
-def chosen(text, known, what):
-    """The names in a text like I,III, in the order of `known`."""
-    if text is None:
-        return tuple(known)
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    for name in names or [""]:
-        if name not in known:
-            raise InputError(f"{what}: '{name}' is unknown, expected some of: {', '.join(known)}")
-    return tuple(name for name in known if name in names)
 
 
 def recorded_sequences(arguments, definitions, config):
@@ -114,15 +86,9 @@ def quick_choice(sequences):
         for sequence in others[:QUICK_SEQUENCES - 1]]
 
 
-def quick_definitions(definitions):
-    """Of each table the baseline and one other row, and of what gets worse one kind that changes
-    arguments and one that changes images, at its mildest level, at which a few images are enough."""
-    return dataclasses.replace(definitions, tables={
-        name: quick_table(table, definitions.degradations)
-        for name, table in definitions.tables.items()})
-
-
 def quick_table(table, known):
+    """Of a table the baseline and one other row, and of what gets worse one kind that changes
+    arguments and one that changes images, at its mildest level, at which a few images are enough."""
     other = next((row for row in table.rows if row.variant != table.baseline), None)
     rows = tuple(row for row in table.rows if row.variant == table.baseline or row is other)
     by_kind = {bool(known[name].options): name for name in reversed(table.degradations)}
@@ -139,7 +105,9 @@ def suite_cache(arguments, tools):
 def make_request(arguments, tools, suite):
     definitions = read_definitions(arguments.definitions)
     if arguments.quick:
-        definitions = quick_definitions(definitions)
+        definitions = dataclasses.replace(definitions, tables={
+            name: quick_table(table, definitions.degradations)
+            for name, table in definitions.tables.items()})
     frames = arguments.frames or (QUICK_FRAMES if arguments.quick else None)
     sequences = recorded_sequences(arguments, definitions, tools.config)
     if suite:
@@ -169,26 +137,12 @@ def print_plan(request, plan, cells, out):
             name for cell in found for name in cell["runs"].values())
     for (table, mode), names in used.items():
         print(f"table {table}, {mode}: {len(names)} runs")
-    done = {name for name, run in plan["runs"].items()
-            if read_if_there(out / result_file(name, run))}
+    done = {name for name, run in plan["runs"].items() if (out / result_file(name, run)).is_file()}
     frames = sum(run["frames"] for name, run in plan["runs"].items() if name not in done)
     print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to "
           "process")
     for name in plan["runs"]:
         print(f"  {'done' if name in done else 'to do'}  {name}")
-
-
-def read_if_there(path):
-    return path.is_file()
-
-
-def describe_dry_run(plan_file, out, arguments):
-    """Asks Snakemake what it would do."""
-    command = snakemake_command(plan_file, arguments.jobs, arguments.profile, True)
-    result = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
-    print(result.stdout.strip())
-    if result.returncode != 0:
-        raise Stopped(f"the dry run of Snakemake has failed: {result.stderr.strip()[-500:]}")
 
 
 def forget_failures(plan, out):
@@ -205,16 +159,16 @@ def write_tables(report, out, old):
     for path in (new, former):
         shutil.rmtree(path, ignore_errors=True)
     new.mkdir()
-    grids = None
+    grid = None
     if old is not None:
         found = compare_reports(old, json.loads(report.json_text()))
-        labels = {name: variant.label for name, variant in report.definitions.variants.items()}
-        grids = [comparison_grid(found, labels)]
-        write(new / "compare.json", comparison_json(found))
-        write(new / "compare.md", "\n".join(grid_lines(grids[0], 1)).rstrip() + "\n")
+        grid = comparison_grid(found, {name: variant.label for name, variant in
+                                       report.definitions.variants.items()})
+        write(new / "compare.json", json.dumps(found, indent=1) + "\n")
+        write(new / "compare.md", "\n".join(markdown_lines(grid, 1)).rstrip() + "\n")
     for name, text in (("tables.md", markdown(report)), ("tables.tex", latex(report)),
                        ("tables.csv", report.csv_text()), ("tables.json", report.json_text()),
-                       ("index.html", page(report, out, grids))):
+                       ("index.html", page(report, out, grid))):
         write(new / name, text)
     if target.exists():
         target.rename(former)
@@ -227,19 +181,17 @@ def make_reports(report, out, program, jobs):
     folders = [out / "runs" / run / "out" for run in dict.fromkeys(shown_runs(report))]
     commands = [[str(program), str(folder), "--report"] for folder in folders
                 if not (folder / "report.html").is_file()]
+
+    def make(command):
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        if result.returncode != 0:
+            raise Stopped(f"{' '.join(command)}: {result.stderr.strip()[-500:]}")
     with concurrent.futures.ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
-        for command, result in zip(commands, pool.map(call, commands)):
-            if result.returncode != 0:
-                raise Stopped(f"{' '.join(command)}: {result.stderr.strip()[-500:]}")
-
-
-def call(command):
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+        list(pool.map(make, commands))
 
 
 def reproduce(arguments):
-    config = find_config()
-    tools = Tools(arguments.programs.resolve(), SCRIPTS, config)
+    out, tools = arguments.out, Tools(arguments.programs.resolve())
     old = read_report(arguments.compare) if arguments.compare else None
     viewer = tools.path("view") if arguments.reports else None
     paper = read_json(OWN / "paper_tables.json")
@@ -252,29 +204,28 @@ def reproduce(arguments):
     if not plan["runs"]:
         raise InputError("there is nothing to run: no sequence fits to these tables and modes")
     if arguments.list:
-        print_plan(request, plan, cells, arguments.out)
+        print_plan(request, plan, cells, out)
         return
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     if suite:
         write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
-    with table_lock(arguments.out):
-        write(arguments.out / PLAN, json.dumps(plan, indent=1) + "\n")
+    with table_lock(out):
+        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
         if arguments.retry_failed:
-            forget_failures(plan, arguments.out)
+            forget_failures(plan, out)
         if arguments.dry_run:
-            describe_dry_run(PLAN, arguments.out, arguments)
+            print(describe_dry_run(out, arguments.jobs, arguments.profile))
             return
         if not arguments.so_far:
-            jobs = arguments.jobs or (None if arguments.profile else os.cpu_count())
-            make_all(plan, PLAN, arguments.out, jobs, arguments.profile, arguments.quiet)
-        results = read_results(plan, arguments.out)
+            make_all(plan, out, arguments.jobs, arguments.profile, arguments.quiet)
+        results = read_results(plan, out)
         report = Report(request, plan, cells, results, paper)
         if viewer:
-            make_reports(report, arguments.out, viewer, arguments.jobs)
-        write_tables(report, arguments.out, old)
+            make_reports(report, out, viewer, arguments.jobs)
+        write_tables(report, out, old)
     failed = sum(1 for result in results.values() if result and result["failure"])
     if not arguments.quiet:
-        print(f"{arguments.out / 'tables' / 'index.html'}: {len(results)} runs, {failed} failed")
+        print(f"{out / 'tables' / 'index.html'}: {len(results)} runs, {failed} failed")
 
 
 # ---- arguments
@@ -339,17 +290,10 @@ def parse_arguments(words):
     return arguments
 
 
-def stop(number, _):
-    """Ends the jobs, as Ctrl-C does."""
-    raise Stopped(f"ended by {signal.Signals(number).name}; start again to go on")
-
-
 def main(words=None):
     arguments = parse_arguments(words)
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
-            signal.signal(number, stop)
-    return exit_code(reproduce, arguments, failures=(Stopped, OSError))
+    stop_by_signals()
+    return exit_code(reproduce, arguments)
 
 
 if __name__ == "__main__":

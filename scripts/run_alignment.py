@@ -4,6 +4,9 @@
 import numpy as np
 
 MAX_DIFFERENCE = 0.02  # s, between the stamps of an estimated pose and a true one
+LEAST_POSES = 3  # for an alignment
+STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 triples, and no triple of
+#              50 is right with a probability of (7/8)^50 = 0.1 %
 
 
 def pair(stamps, truth_stamps):
@@ -11,14 +14,12 @@ def pair(stamps, truth_stamps):
 
     Each stamp is in one pair at most; the pair with the smallest difference is taken first.
     """
-    candidates = []
     begin = np.searchsorted(truth_stamps, stamps - MAX_DIFFERENCE)
     end = np.searchsorted(truth_stamps, stamps + MAX_DIFFERENCE, side="right")
-    for i, stamp in enumerate(stamps):
-        for j in range(begin[i], end[i]):
-            candidates.append((abs(stamp - truth_stamps[j]), i, j))
+    candidates = sorted((abs(stamp - truth_stamps[j]), i, j) for i, stamp in enumerate(stamps)
+                        for j in range(begin[i], end[i]))
     used_i, used_j, pairs = set(), set(), []
-    for difference, i, j in sorted(candidates):
+    for difference, i, j in candidates:
         if difference < MAX_DIFFERENCE and i not in used_i and j not in used_j:
             used_i.add(i)
             used_j.add(j)
@@ -26,8 +27,24 @@ def pair(stamps, truth_stamps):
     return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
 
 
-STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 triples, and no triple of
-#              50 is right with a probability of (7/8)^50 = 0.1 %
+def align(source, target, with_scale=False):
+    """Returns s, R (3 x 3) and t (3) that minimise |s R source + t - target| (Umeyama 1991).
+
+    `source` and `target` are n x 3, one point per row. s is 1 unless `with_scale`.
+    """
+    source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
+    u, singular, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
+    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u) * np.linalg.det(vt))])
+    rotation = u @ flip @ vt
+    spread = np.sum((source - source_mean) ** 2)
+    scale = float(singular @ np.diag(flip) / spread) if with_scale and spread > 0 else 1.0
+    return scale, rotation, target_mean - scale * rotation @ source_mean
+
+
+def move(alignment, points):
+    """Points moved by a result of align()."""
+    scale, rotation, shift = alignment
+    return scale * points @ rotation.T + shift
 
 
 def align_most(source, target, with_scale=False):
@@ -55,21 +72,12 @@ def align_most(source, target, with_scale=False):
     return best
 
 
-def move(alignment, points):
-    """Points moved by a result of align()."""
-    scale, rotation, shift = alignment
-    return scale * points @ rotation.T + shift
-
-
-def align(source, target, with_scale=False):
-    """Returns s, R (3 x 3) and t (3) that minimise |s R source + t - target| (Umeyama 1991).
-
-    `source` and `target` are n x 3, one point per row. s is 1 unless `with_scale`.
-    """
-    source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
-    u, singular, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u) * np.linalg.det(vt))])
-    rotation = u @ flip @ vt
-    spread = np.sum((source - source_mean) ** 2)
-    scale = float(singular @ np.diag(flip) / spread) if with_scale and spread > 0 else 1.0
-    return scale, rotation, target_mean - scale * rotation @ source_mean
+def aligned_errors(estimate, truth, with_scale, find=align):
+    """(stamps, errors m, aligned positions, true positions) of the paired poses of two trajectories
+    (stamps, poses); None if there are too few. find() aligns them."""
+    pairs = pair(estimate[0], truth[0])
+    if len(pairs) < LEAST_POSES:
+        return None
+    source, target = estimate[1][pairs[:, 0], :3], truth[1][pairs[:, 1], :3]
+    moved = move(find(source, target, with_scale), source)
+    return estimate[0][pairs[:, 0]], np.linalg.norm(moved - target, axis=1), moved, target

@@ -40,8 +40,7 @@ step "compare objects with ground truth"
 "$bin/evaluate" objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
 
 step "draw"
-"$top/scripts/plot_run.py" "$run" --groundtruth "$sequence/groundtruth.txt" --overlay 6 \
-  --sequence "$sequence"
+"$top/scripts/plot_run.py" "$run" --overlay 6
 
 step "done"
 printf 'Open the report in a browser: %s\n' "file://$(readlink -f "$run")/report.html"

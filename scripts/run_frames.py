@@ -8,7 +8,7 @@ import struct
 
 import numpy as np
 
-from run_errors import InputError
+from support import InputError
 
 SUFFIXES = (".png", ".jpg", ".jpeg")
 RIGHT_ANGLES = {(1, 0, 0, 1): 1, (0, 1, -1, 0): 6, (-1, 0, 0, -1): 3, (0, -1, 1, 0): 8}
@@ -79,14 +79,6 @@ class VideoFrames:
     def skip(self):
         """Goes to the next frame; false after the last one."""
         return self.video.grab()
-
-    def milliseconds(self):
-        """The stamp of the frame of the last skip()."""
-        return self.video.get(self.cv2.CAP_PROP_POS_MSEC)
-
-    def rate(self):
-        """The mean number of frames per second."""
-        return self.video.get(self.cv2.CAP_PROP_FPS)
 
     def image(self):
         """The frame of the last skip(), with blue first; None if it cannot be decoded."""

@@ -1,55 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scripts share that make many runs and compare them: figures of summary.json, the
-sign-flip test, and files that are never incomplete."""
+"""Tests whether two sets of runs differ by more than chance."""
 
-import hashlib
 import itertools
-import json
 import math
 import random
 import statistics
 
 EXACT_PAIRS = 14  # up to so many pairs, all 2^n sign flips are tried
 DRAWS = 20000  # of random sign flips for more pairs
-
-
-def hash_file(path):
-    """The SHA-256 of the bytes of a file."""
-    digest = hashlib.sha256()
-    with path.open("rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
-
-
-def try_read_json(path):
-    """The JSON object in a file; None if the file cannot be read or contains something else."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    return content if isinstance(content, dict) else None
-
-
-def write(path, text):
-    """Writes a file by renaming a temporary one, so that it is never incomplete."""
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
-
-
-def value_at(summary, keys):
-    """The number under these keys of the summary; None if there is no number."""
-    for key in keys:
-        summary = summary.get(key) if isinstance(summary, dict) else None
-    is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
-    return float(summary) if is_number else None
-
-
-def lost_percent(summary):
-    """The share of the frames without a pose; None if it is not known."""
-    frames, tracked = (value_at(summary, ("trajectory", key)) for key in ("frames", "tracked"))
-    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
 
 
 def flip_probability(differences):

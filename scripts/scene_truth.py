@@ -16,12 +16,7 @@ import pathlib
 import subprocess
 import sys
 
-from python_packages import require
-
-require("numpy")
-from run_errors import InputError  # noqa: E402
-from run_files import read_json  # noqa: E402
-from run_programs import programs_folder  # noqa: E402
+from support import InputError, programs_folder, read_json
 
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects

@@ -9,10 +9,10 @@ Snakemake starts it; there is no need to call it by hand.
 
 import sys
 
-from paper_tables.job import main
+from paper_tables.engine import job
 
 if __name__ == "__main__":
     if len(sys.argv) != 4 or sys.argv[2] not in ("run", "folder"):
         print(__doc__, end="", file=sys.stderr)
         sys.exit(2)
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(job(sys.argv[1:]))

@@ -2,14 +2,42 @@
 """The lists of a sequence in TUM's format or in ICL-NUIM's (its PNG package): reads and writes
 them."""
 
+import shutil
+
 import numpy as np
 
 from disturbances import Frame
-from leave_and_return import read_rows
-from run_files import InputError
+from support import InputError, read_text
 
 MAX_DIFFERENCE = 0.02  # s, between an image and its depth, as in TUM's associate.py
 ICL_RATE = 30.0  # images per second
+
+
+def read_rows(path):
+    """Stamp and the other words of each line of a TUM list."""
+    rows = []
+    for count, line in enumerate(read_text(path).splitlines(), 1):
+        words = line.split()
+        if not words or words[0].startswith("#"):
+            continue
+        try:
+            rows.append((float(words[0]), words[1:]))
+        except ValueError as error:
+            raise InputError(f"{path}:{count}: expected a time stamp") from error
+        if len(words) < 2 or not np.isfinite(rows[-1][0]):
+            raise InputError(f"{path}:{count}: expected a time stamp and more")
+    if not rows:
+        raise InputError(f"{path}: no lines")
+    return rows
+
+
+def link(source, target):
+    """Makes a link, or a copy if the file system has no links."""
+    source = source.resolve(strict=True)
+    try:
+        target.symlink_to(source)
+    except OSError:
+        shutil.copy(source, target)
 
 
 def pair_depth(stamps, depth_stamps):

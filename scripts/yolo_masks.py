@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from run_files import InputError, one_line
+from support import InputError, one_line
 
 
 def read_masks(path):

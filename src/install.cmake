@@ -29,7 +29,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/object_*.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/python_packages.py
+                                   ${PROJECT_SOURCE_DIR}/scripts/support.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
 foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads tables.yaml: the variants, what each table shows, and what gets worse in the last one."""
+"""Reads the definitions of experiments: tables.yaml (variants, what each table shows, what gets worse)
+and accuracy.yaml (the cases of the gate)."""
 
 import dataclasses
 import re
@@ -7,10 +8,11 @@ import re
 import yaml
 
 from paper_tables.figures import FIGURES
-from run_errors import InputError, one_line
+from support import InputError, one_line, read_text
 
 MODES = ("rgbd", "mono")
 NAME = r"[A-Za-z0-9][\w.+-]*"  # also the name of a folder
+SOURCES = ("recorded", "suite", "rendering")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,9 +50,9 @@ class Table:
     name: str
     title: str
     rows: tuple
-    modes: tuple
     figures: tuple
     baseline: str
+    modes: tuple = MODES
     paper: str = None
     only: tuple = None  # the sequences of the paper that it has; None: all sequences
     sequences: int = None  # the largest number of sequences; None: no limit
@@ -66,40 +68,70 @@ class Claim:
 
 
 @dataclasses.dataclass(frozen=True)
+class Case:
+    name: str
+    source: str  # one of SOURCES
+    sequence: str
+    variants: tuple
+    seeds: tuple = (0,)  # of renderings; (None,) for a recorded sequence
+    first: tuple = (0,)
+    last: int = None
+    degradation: str = None
+    modes: tuple = MODES
+
+
+@dataclasses.dataclass(frozen=True)
 class Definitions:
     variants: dict
-    paper_sequences: dict  # name in the paper -> end of the name of the folder
-    tables: dict
     degradations: dict
-    claims: tuple
+    paper_sequences: dict = dataclasses.field(default_factory=dict)  # name -> end of the folder's name
+    tables: dict = dataclasses.field(default_factory=dict)
+    claims: tuple = ()
+    renderings: dict = dataclasses.field(default_factory=dict)  # name -> options of make_synthetic
+    cases: dict = dataclasses.field(default_factory=dict)
 
 
 class Node:
     """A value of the file, with the path of keys that leads to it, for messages."""
 
-    def __init__(self, value, path, where):
+    def __init__(self, value, path, where=""):
         self.value, self.path, self.where = value, path, where
 
     def fail(self, expected):
         raise InputError(f"{self.path}: {self.where or 'top level'}: is "
                          f"'{one_line(self.value, 60)}', expected {expected}")
 
-    def mapping(self, known=None):
+    def mapping(self, known=None, needed=()):
         if not isinstance(self.value, dict):
             self.fail("a map of keys and values")
         for key in self.value:
+            told = f"{self.path}: {self.where or 'top level'}: "
             if not isinstance(key, str):
-                raise InputError(f"{self.path}: {self.where or 'top level'}: the key "
-                                 f"'{one_line(key, 40)}' is no text (YAML reads yes, no, on and off "
-                                 "as truth values); put it into quotes")
+                raise InputError(f"{told}the key '{one_line(key, 40)}' is no text (YAML reads yes, no, on "
+                                 "and off as truth values); put it into quotes")
             if known is not None and key not in known:
-                raise InputError(f"{self.path}: {self.where or 'top level'}: unknown key "
-                                 f"'{one_line(key, 40)}', expected some of: {', '.join(known)}")
+                raise InputError(f"{told}unknown key '{one_line(key, 40)}', expected some of: "
+                                 f"{', '.join(known)}")
+        for key in needed:
+            if self.value.get(key) is None:
+                self.fail(f"the key {key}")
         return {key: self.at(key) for key in self.value}
 
+    def named(self):
+        """A map whose keys are names of folders."""
+        found = self.mapping()
+        for key in found:
+            if not re.fullmatch(NAME, key):
+                raise InputError(f"{self.path}: {self.where}: '{one_line(key, 40)}' is no name, expected "
+                                 "letters, digits and . _ + -")
+        return found
+
+    def read(self, readers, needed=()):
+        """The values of a map, each by the reader of its key."""
+        return {key: readers[key](node) for key, node in self.mapping(tuple(readers), needed).items()}
+
     def at(self, key):
-        where = f"{self.where}.{key}" if self.where else str(key)
-        return Node(self.value.get(key), self.path, where)
+        return Node(self.value.get(key), self.path, f"{self.where}.{key}" if self.where else str(key))
 
     def text(self):
         if not isinstance(self.value, str) or not self.value.strip():
@@ -111,140 +143,135 @@ class Node:
             self.fail("true or false")
         return self.value
 
-    def count(self):
-        if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < 1:
-            self.fail("a whole number from 1 on")
+    def number(self, expected="a number", kinds=(int, float), least=-float("inf")):
+        if not isinstance(self.value, kinds) or isinstance(self.value, bool) or self.value < least:
+            self.fail(expected)
         return self.value
+
+    def count(self):
+        return self.number("a whole number from 1 on", int, 1)
 
     def items(self):
         if not isinstance(self.value, list):
             self.fail("a list")
         return [Node(value, self.path, f"{self.where}[{i}]") for i, value in enumerate(self.value)]
 
-    def texts(self, allowed=None):
-        found = tuple(item.one_of(allowed) if allowed else item.text() for item in self.items())
-        if len(set(found)) != len(found) and allowed:
-            self.fail("each entry once")
-        return found
+    def arguments(self):
+        """Arguments of a program; numbers become texts."""
+        return tuple(str(item.value) if isinstance(item.value, (int, float)) else item.text()
+                     for item in self.items())
 
     def one_of(self, allowed):
         if self.value not in list(allowed):
             self.fail(f"one of: {', '.join(allowed)}")
         return self.value
 
-    def arguments(self):
-        """Arguments of a program; numbers become texts."""
-        return tuple(str(item.value) if isinstance(item.value, (int, float)) else item.text()
-                     for item in self.items())
+    def some_of(self, allowed):
+        found = tuple(item.one_of(allowed) for item in self.items())
+        if len(set(found)) != len(found):
+            self.fail("each entry once")
+        return found
+
+    def whole_numbers(self):
+        found = tuple(item.value for item in self.items())
+        is_good = found and all(type(value) is int and value >= 0 for value in found)
+        if not is_good or len(set(found)) != len(found):
+            self.fail("a list of different whole numbers from 0 on")
+        return found
+
+
+def one_of(allowed):
+    return lambda node: node.one_of(allowed)
+
+
+def some_of(allowed):
+    return lambda node: node.some_of(tuple(allowed))
 
 
 def read_variant(name, node):
-    if not re.fullmatch(NAME, name):
-        raise InputError(f"{node.path}: variants: '{one_line(name, 40)}' is no name, expected "
-                         "letters, digits and . _ + -")
-    keys = node.mapping(("label", "arguments", "masks", "objects", "modes", "same_as"))
-    masks = keys["masks"].flag() if "masks" in keys else True
-    return Variant(name, keys["label"].text() if "label" in keys else name,
-                   keys["arguments"].arguments() if "arguments" in keys else (), masks,
-                   keys["objects"].flag() if "objects" in keys else masks,
-                   keys["modes"].texts(MODES) if "modes" in keys else MODES,
-                   keys["same_as"].text() if "same_as" in keys else None)
+    found = node.read({"label": Node.text, "arguments": Node.arguments, "masks": Node.flag,
+                       "objects": Node.flag, "modes": some_of(MODES), "same_as": Node.text})
+    return Variant(**{"name": name, "label": name, "objects": found.get("masks", True), **found})
 
 
 def read_degradation(name, node):
-    keys = node.mapping(("label", "levels", "arguments", "options", "only_with_objects", "modes",
-                         "unchanged"))
-    for needed in ("label", "levels"):
-        keys.get(needed) or node.fail(f"the key {needed}")
-    if "arguments" not in keys and "options" not in keys:
+    found = node.read({"label": Node.text, "levels": Node.arguments, "arguments": Node.arguments,
+                       "options": Node.arguments, "only_with_objects": Node.flag,
+                       "modes": some_of(MODES), "unchanged": lambda node: str(node.value)},
+                      ("label", "levels"))
+    if "arguments" not in found and "options" not in found:
         node.fail("arguments or options")
-    return Degradation(name, keys["label"].text(), keys["levels"].arguments(),
-                       keys["arguments"].arguments() if "arguments" in keys else (),
-                       keys["options"].arguments() if "options" in keys else (),
-                       keys["only_with_objects"].flag() if "only_with_objects" in keys else False,
-                       keys["modes"].texts(MODES) if "modes" in keys else MODES,
-                       read_unchanged(keys) if "unchanged" in keys else None)
-
-
-def read_unchanged(keys):
-    for node in (keys["unchanged"], *keys["levels"].items()):
-        if not isinstance(node.value, (int, float)) or isinstance(node.value, bool):
-            node.fail("a number, because the key unchanged says that the levels are a scale")
-    return str(keys["unchanged"].value)
+    for item in [node.at("unchanged"), *node.at("levels").items()] if "unchanged" in found else ():
+        item.number("a number, because the key unchanged says that the levels are a scale")
+    return Degradation(name=name, **found)
 
 
 def read_row(node, variants):
     if isinstance(node.value, str):
-        name = node.one_of(variants)
-        return Row(name, variants[name].label)
-    keys = node.mapping(("variant", "label", "paper"))
-    "variant" in keys or node.fail("the key variant")
-    name = keys["variant"].one_of(variants)
-    return Row(name, keys["label"].text() if "label" in keys else variants[name].label,
-               keys["paper"].text() if "paper" in keys else None)
+        return Row(node.one_of(variants), variants[node.value].label)
+    found = node.read({"variant": one_of(variants), "label": Node.text, "paper": Node.text}, ("variant",))
+    return Row(**{"label": variants[found["variant"]].label, **found})
 
 
 def read_table(name, node, variants, degradations, paper_sequences):
-    keys = node.mapping(("title", "rows", "modes", "figures", "baseline", "paper", "only",
-                         "sequences", "degradations"))
-    for needed in ("title", "rows", "figures"):
-        keys.get(needed) or node.fail(f"the key {needed}")
-    rows = tuple(read_row(item, variants) for item in keys["rows"].items())
-    names = [row.variant for row in rows]
-    if not rows or len(set(names)) != len(names):
-        keys["rows"].fail("one row or more, each with another variant")
-    shown = keys["degradations"].texts(tuple(degradations)) if "degradations" in keys else ()
+    found = node.read({
+        "title": Node.text, "rows": lambda node: tuple(read_row(item, variants) for item in node.items()),
+        "modes": some_of(MODES), "figures": some_of(FIGURES), "baseline": Node.text, "paper": Node.text,
+        "only": some_of(paper_sequences), "sequences": Node.count,
+        "degradations": some_of(degradations)}, ("title", "rows", "figures"))
+    names = [row.variant for row in found["rows"]]
+    if not names or len(set(names)) != len(names):
+        node.at("rows").fail("one row or more, each with another variant")
+    if "baseline" in found:
+        node.at("baseline").one_of(names)
+    shown = found.get("degradations", ())
     if len(shown) > 1 and any(degradations[key].unchanged for key in shown):
-        keys["degradations"].fail("one degradation, if it has the key unchanged")
-    return Table(name, keys["title"].text(), rows,
-                 keys["modes"].texts(MODES) if "modes" in keys else MODES,
-                 keys["figures"].texts(tuple(FIGURES)),
-                 keys["baseline"].one_of(names) if "baseline" in keys else names[0],
-                 keys["paper"].text() if "paper" in keys else None,
-                 keys["only"].texts(tuple(paper_sequences)) if "only" in keys else None,
-                 keys["sequences"].count() if "sequences" in keys else None,
-                 shown)
+        node.at("degradations").fail("one degradation, if it has the key unchanged")
+    return Table(**{"name": name, "baseline": names[0], **found})
 
 
-def read_claim(node, variants):
-    keys = node.mapping(("text", "figure", "better", "than"))
-    for needed in ("text", "figure", "better", "than"):
-        keys.get(needed) or node.fail(f"the key {needed}")
-    return Claim(keys["text"].text(), keys["figure"].one_of(tuple(FIGURES)),
-                 keys["better"].one_of(variants), keys["than"].texts(tuple(variants)))
+def read_case(name, node, variants, degradations, renderings):
+    found = node.read({"recorded": Node.text, "suite": Node.text, "rendering": one_of(renderings),
+                       "seeds": Node.whole_numbers, "first": Node.whole_numbers, "last": Node.count,
+                       "degradation": one_of(degradations), "modes": some_of(MODES),
+                       "variants": some_of(variants)})
+    sources = [source for source in SOURCES if source in found]
+    if len(sources) != 1:
+        node.fail(f"one of the keys {', '.join(SOURCES)}")
+    source, = sources
+    if source == "recorded" and found.setdefault("seeds", (None,)) != (None,):
+        node.at("seeds").fail("nothing, because a recorded sequence has no seed")
+    return Case(**{"name": name, "source": source, "sequence": found.pop(source),
+                   "variants": tuple(variants), **found})
 
 
-def load(path):
+def read_definitions(path, kind="tables"):
+    """The Definitions in a file like tables.yaml or, with the kind "cases", accuracy.yaml."""
+    others = {"tables": ("paper_sequences", "claims"), "cases": ("renderings",)}[kind]
     try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text file: {error}") from error
-    try:
-        return yaml.safe_load(text)
+        top = Node(yaml.safe_load(read_text(path)), path)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise InputError(f"{path}: not valid YAML: {one_line(error)}") from error
-
-
-def read_definitions(path):
-    """The Definitions in a file like tables.yaml."""
-    keys = Node(load(path), path, "").mapping(
-        ("variants", "paper_sequences", "tables", "degradations", "claims"))
-    for needed in ("variants", "tables"):
+    keys = top.mapping(("variants", "degradations", kind, *others))
+    for needed in ("variants", kind):
         if needed not in keys:
             raise InputError(f"{path}: has no key {needed}")
-    optional = {key: keys[key].mapping() if key in keys else {}
-                for key in ("paper_sequences", "degradations")}
-    variants = {name: read_variant(name, node) for name, node in keys["variants"].mapping().items()}
+
+    def each(key, read, *known):
+        return {name: read(name, node, *known) for name, node in keys[key].named().items()} \
+            if key in keys else {}
+    variants, degradations = each("variants", read_variant), each("degradations", read_degradation)
     for name, variant in variants.items():
         if variant.same_as is not None:
             keys["variants"].at(name).at("same_as").one_of(variants)
-    paper_sequences = {name: node.text() for name, node in optional["paper_sequences"].items()}
-    degradations = {name: read_degradation(name, node)
-                    for name, node in optional["degradations"].items()}
-    tables = {name: read_table(name, node, variants, degradations, paper_sequences)
-              for name, node in keys["tables"].mapping().items()}
-    claims = tuple(read_claim(item, variants) for item in keys["claims"].items()) \
-        if "claims" in keys else ()
-    return Definitions(variants, paper_sequences, tables, degradations, claims)
+    if kind == "cases":
+        renderings = each("renderings", lambda _, node: node.arguments())
+        return Definitions(variants, degradations, renderings=renderings,
+                           cases=each("cases", read_case, variants, degradations, renderings))
+    paper_sequences = each("paper_sequences", lambda _, node: node.text())
+    claim = {"text": Node.text, "figure": one_of(FIGURES), "better": one_of(variants),
+             "than": some_of(variants)}
+    claims = keys["claims"].items() if "claims" in keys else ()
+    return Definitions(variants, degradations, paper_sequences,
+                       each("tables", read_table, variants, degradations, paper_sequences),
+                       tuple(Claim(**node.read(claim, tuple(claim))) for node in claims))

@@ -2,8 +2,11 @@
 """The figures of a run: how each is taken from its results, and how tables show it."""
 
 import dataclasses
+import json
+import shlex
+import subprocess
 
-from run_statistics import lost_percent, value_at
+from support import Stopped, one_line, value_at
 
 
 @dataclasses.dataclass(frozen=True)
@@ -16,14 +19,10 @@ class Column:
 class Figure:
     """A figure that tables can show. Some have two columns, which differ between the modes."""
     title: str
-    columns: dict  # mode -> columns; the first one ranks the rows
+    columns: dict  # mode -> columns; the first one ranks the rows, the last one is the paper's
     factor: float  # from the unit of the run (metres, 0 to 1) to the unit of the heading
     digits: int  # after the decimal point
     lower_is_better: bool = None  # None: neither
-
-    def paper_column(self, mode):
-        """The column that the paper's figure belongs to: the last one."""
-        return self.columns[mode][-1]
 
 
 def same(heading, key):
@@ -34,46 +33,66 @@ FIGURES = {
     "ate": Figure("ATE, mm", {
         "rgbd": (Column("ATE SE3, mm", "ate_se3"), Column("ATE Sim3, mm", "ate_sim3")),
         "mono": (Column("ATE all frames, mm", "ate_sim3"),
-                 Column("ATE keyframes, mm", "keyframes_ate_sim3"))},
-        1e3, 2, True),
+                 Column("ATE keyframes, mm", "keyframes_ate_sim3"))}, 1e3, 2, True),
     "lost": Figure("frames without a pose, %", same("no pose, %", "lost"), 1.0, 1, True),
     "siou": Figure("SIoU", same("SIoU", "siou"), 1.0, 3, False),
     "siou_mask": Figure("SIoU with the mask", same("SIoU mask", "siou_mask"), 1.0, 3, False),
     "mtd": Figure("MTD, 1e-3 m2", same("MTD, 1e-3 m2", "mtd"), 1e3, 3, True),
     "objects": Figure("mapped objects", same("objects", "objects"), 1.0, 1),
-    "found": Figure("visible true objects that are mapped, %", same("found, %", "found"),
-                    1e2, 1, False),
-    "doubles": Figure("true objects that are mapped more than once",
-                      same("doubles", "doubles"), 1.0, 1, True),
-    "centre": Figure("error of the centres, % of the size", same("centre, %", "centre"),
-                     1e2, 1, True),
+    "found": Figure("visible true objects that are mapped, %", same("found, %", "found"), 1e2, 1, False),
+    "doubles": Figure("true objects that are mapped more than once", same("doubles", "doubles"), 1.0, 1,
+                      True),
+    "centre": Figure("error of the centres, % of the size", same("centre, %", "centre"), 1e2, 1, True),
 }
 
 
-def of_objects(summary, scale):
-    """The figures of the objects. `scale` is the metres per unit of length of the run."""
-    mtd = value_at(summary, ("objects", "mtd_mean_m2"))
-    return {"objects": value_at(summary, ("objects", "count")),
-            "siou": value_at(summary, ("objects", "siou_mean")),
-            "siou_mask": value_at(summary, ("objects", "siou_mask_mean")),
-            "mtd": None if mtd is None or scale is None else mtd * scale**2}
+def lost_percent(summary):
+    """The share of the frames without a pose; None if it is not known."""
+    frames, tracked = (value_at(summary, "trajectory", key) for key in ("frames", "tracked"))
+    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
 
 
 def of_true_objects(report):
     """The figures of the comparison with true objects, from the report of `evaluate objects`."""
-    once, more, visible = (value_at(report, ("groundtruth", key))
-                           for key in ("once", "more", "visible"))
-    found = (once + more) / visible if visible and None not in (once, more) else None
-    shares = [value_at(match, ("center_share",))
+    once, more, visible = (value_at(report, "groundtruth", key) for key in ("once", "more", "visible"))
+    shares = [value_at(match, "center_share")
               for item in (report.get("groundtruth") or {}).get("each", [])
               for match in item.get("mapped", [])]
     shares = [share for share in shares if share is not None]
-    return {"found": found, "doubles": more,
-            "centre": sum(shares) / len(shares) if shares else None}
+    return {"found": (once + more) / visible if visible and None not in (once, more) else None,
+            "doubles": more, "centre": sum(shares) / len(shares) if shares else None}
 
 
-def of_trajectory(summary):
-    return {"lost": lost_percent(summary),
-            "frames": value_at(summary, ("trajectory", "frames")),
-            "keyframes": value_at(summary, ("map", "keyframes")),
-            "loops": value_at(summary, ("map", "loops"))}
+def ask(*command):
+    """The JSON report of an evaluation; {} if it refuses its input, for example no poses."""
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        return json.loads(result.stdout) if result.returncode == 0 else {}
+    except ValueError as error:
+        raise Stopped(f"{shlex.join(command)}: has printed no JSON: {one_line(error)}") from error
+
+
+def evaluate(program, run, folder, summary):
+    """The figures of a finished run in `folder`. `program` is that which evaluates."""
+    out, truth, scale = folder / "out", folder / "groundtruth.txt", 1.0
+    figures = {"lost": lost_percent(summary), "frames": value_at(summary, "trajectory", "frames"),
+               "keyframes": value_at(summary, "map", "keyframes"), "loops": value_at(summary, "map", "loops")}
+    for file, prefix in (("trajectory.txt", ""), ("keyframes.txt", "keyframes_")):
+        for alignment in ("se3", "sim3")[run["mode"] == "mono":] if truth.exists() else ():
+            report = ask(program, "trajectory", str(truth), str(out / file), "--align", alignment,
+                         "--json")
+            figures[f"{prefix}ate_{alignment}"] = value_at(report, "ate_m", "rmse")
+            if run["mode"] == "mono" and not prefix:
+                scale = value_at(report, "scale")
+    if summary.get("objects") is None:
+        return figures
+    # The scale is the metres per unit of length of the run.
+    mtd = value_at(summary, "objects", "mtd_mean_m2")
+    figures |= {"objects": value_at(summary, "objects", "count"),
+                "siou": value_at(summary, "objects", "siou_mean"),
+                "siou_mask": value_at(summary, "objects", "siou_mask_mean"),
+                "mtd": None if mtd is None or scale is None else mtd * scale**2}
+    if run["objects"] is not None:
+        figures |= of_true_objects(ask(program, "objects", str(out), "--groundtruth", run["objects"],
+                                       "--json"))
+    return figures

@@ -22,15 +22,13 @@ import statistics
 import numpy as np
 
 from paper_tables.text import DASH, Grid, Text
-from run_alignment import align, align_most, move, pair
-from run_errors import InputError
-from run_files import read_trajectory
-from run_statistics import sign_probability, value_at
+from run_alignment import LEAST_POSES, align, align_most, move, pair
+from run_statistics import sign_probability
+from support import InputError, read_trajectory, value_at
 
 WRONG = 0.05  # of the true path: a frame that is farther off is wrong
 OTHER_PART = 10.0  # percent of the frames that only one of two runs knows: a run that loses more frames
 #                    has the error of an easier part, and the loss itself is compared
-LEAST_POSES = 3  # for an alignment
 DEVIATIONS = 4.0  # s / sqrt(n) of a case, until a difference counts. The deviation of a median is up to
 #                   1.25 s / sqrt(n), so this is 3.2 of it: by chance once in 1500, and a comparison
 #                   has some 300 differences of a case, of which most cannot get worse
@@ -117,7 +115,7 @@ def run_report(name, run, result, out, summary):
     return {"case": run["case"], "sequence": run["sequence"], "mode": run["mode"],
             "variant": run["variant"], "seed": run["seed"], "degradation": run["degradation"],
             "level": run["level"], "input": run["input"], "failure": result["failure"],
-            "figures": figures, "track_ms": value_at(summary, ("timing", "track_ms", "median"))}
+            "figures": figures, "track_ms": value_at(summary, "timing", "track_ms", "median")}
 
 
 # ---- comparison
@@ -146,21 +144,16 @@ def grouped(names, key):
     return found
 
 
-def squares(values):
-    mean = statistics.fmean(values)
-    return sum((value - mean)**2 for value in values)
-
-
 def usual_spread(groups):
     """The median spread of the differences within groups that have two or more."""
-    found = [math.sqrt(squares(values) / (len(values) - 1)) for values in groups if len(values) > 1]
-    return statistics.median(found) if found else 0.0
+    return statistics.median([statistics.stdev(values) for values in groups if len(values) > 1] or [0.0])
 
 
 def limit(measure, values, prior):
     """The largest median of the differences `values` that may be chance."""
     prior = max(prior, measure.least / DEVIATIONS)
-    spread = math.sqrt((squares(values) + PRIOR_PAIRS * prior**2)
+    mean = statistics.fmean(values)
+    spread = math.sqrt((sum((value - mean)**2 for value in values) + PRIOR_PAIRS * prior**2)
                        / (len(values) - 1 + PRIOR_PAIRS))
     return max(measure.least, DEVIATIONS * spread / math.sqrt(len(values)))
 

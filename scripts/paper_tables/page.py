@@ -30,16 +30,8 @@ nav a { margin-right: 1em; } ul.notes { font-size: 13px; color: #444; }
 """
 
 
-def escape(text):
-    return html.escape(str(text))
-
-
-def anchor(block):
-    return f"table-{block['table']}-{block['mode']}"
-
-
 def link(text, run):
-    return f'<a href="{escape(plots.link_of(run))}">{escape(text)}</a>' if run else escape(text)
+    return f'<a href="{html.escape(plots.link_of(run))}">{html.escape(text)}</a>' if run else html.escape(text)
 
 
 def cell_html(item):
@@ -53,11 +45,11 @@ def cell_html(item):
 
 def grid_html(grid, level, kind=""):
     width = len(grid.head)
-    lines = [f"<h{level}>{escape(grid.title)}</h{level}>", f'<div class="grid {kind}"><table>',
-             "<tr>" + "".join(f"<th>{escape(text)}</th>" for text in grid.head) + "</tr>"]
+    lines = [f"<h{level}>{html.escape(grid.title)}</h{level}>", f'<div class="grid {kind}"><table>',
+             "<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in grid.head) + "</tr>"]
     for row in grid.rows:
         if len(row) == 1:
-            lines.append(f'<tr class="group"><td colspan="{width}">{escape(row[0].text)}</td></tr>')
+            lines.append(f'<tr class="group"><td colspan="{width}">{html.escape(row[0].text)}</td></tr>')
         else:
             lines.append("<tr>" + "".join(cell_html(item) for item in row) + "</tr>")
     lines.append("</table></div>")
@@ -72,8 +64,8 @@ def note_html(note):
     mark = "failed: "
     if note.startswith(mark):
         run, _, reason = note.removeprefix(mark).partition(": ")
-        return f"{mark}{link(run, run)}: {escape(reason)}"
-    return escape(note)
+        return f"{mark}{link(run, run)}: {html.escape(reason)}"
+    return html.escape(note)
 
 
 def has_curves(report, block):
@@ -92,46 +84,41 @@ def shown_runs(report):
 
 def report_links(report, block, name, out):
     """The reports of the runs whose curves are shown; None if there are none."""
-    links = [f'<a href="{escape(plots.link_of(run))}out/report.html">{escape(label)}</a>'
+    links = [f'<a href="{html.escape(plots.link_of(run))}out/report.html">{html.escape(label)}</a>'
              for label, run in plots.median_runs(report, block, name)
              if (out / "runs" / run / "out" / "report.html").is_file()]
-    return f"<p>Reports of {escape(name)}: {', '.join(links)}</p>" if links else None
+    return f"<p>Reports of {html.escape(name)}: {', '.join(links)}</p>" if links else None
 
 
 def pictures(report, block, out):
     """The pictures of a table."""
     if report.table(block).degradations:
         return [plots.level_plot(report, block)]
-    found = [plots.box_plot(report, block)]
-    if has_curves(report, block):
-        for name in block["sequences"]:
-            found += [plots.curves(report, block, name, out),
-                      report_links(report, block, name, out)]
-    return found
+    names = block["sequences"] if has_curves(report, block) else ()
+    return [plots.box_plot(report, block), *(item for name in names for item in (
+        plots.curves(report, block, name, out), report_links(report, block, name, out)))]
 
 
 def block_html(report, block, out):
-    lines = [f'<section id="{anchor(block)}">']
-    order = ranking_grid(report, block)
-    found = grids(report, block)
-    lines += grid_html(found[0], 2)
+    first, *others = grids(report, block)
     with plt.rc_context(plots.STYLE):
-        lines += [picture for picture in pictures(report, block, out) if picture]
-    for grid in [*found[1:], *([order] if order else [])]:
-        lines += grid_html(grid, 3)
-    return [*lines, "</section>"]
+        shown = [picture for picture in pictures(report, block, out) if picture]
+    order = ranking_grid(report, block)
+    lines = [line for grid in [*others, *([order] if order else [])] for line in grid_html(grid, 3)]
+    return [f'<section id="table-{block["table"]}-{block["mode"]}">', *grid_html(first, 2), *shown, *lines,
+            "</section>"]
 
 
 def page(report, out, comparison):
-    """The page. `out` is the folder of the runs, `comparison` a list of grids or None."""
+    """The page. `out` is the folder of the runs, `comparison` a grid or None."""
     lines = [HEAD.rstrip("\n"), "<nav>"]
-    lines += [f'<a href="#{anchor(block)}">{escape(report.title(block))}</a>'
+    lines += [f'<a href="#table-{block["table"]}-{block["mode"]}">{html.escape(report.title(block))}</a>'
               for block in report.blocks]
-    lines += ["</nav>", "<ul>", *(f"<li>{escape(line)}</li>" for line in preface(report)),
+    lines += ["</nav>", "<ul>", *(f"<li>{html.escape(line)}</li>" for line in preface(report)),
               "<li>Each figure leads to the folder of its run; of several runs, to that with the "
               "median. Small figures are the single runs.</li>", "</ul>"]
-    for grid in comparison or ():
-        lines += grid_html(grid, 2, "texts")
+    if comparison:
+        lines += grid_html(comparison, 2, "texts")
     for block in report.blocks:
         lines += block_html(report, block, out)
     if report.claims:

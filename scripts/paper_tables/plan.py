@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plans the runs of the tables: one for each different sequence, mode, seed and set of arguments.
+"""Plans the runs of experiments: one for each different sequence, mode, seed and set of arguments.
 
 A plan is a JSON object. Its paths are relative to the output folder, or absolute outside of it:
 
@@ -12,16 +12,16 @@ A plan is a JSON object. Its paths are relative to the output folder, or absolut
 import dataclasses
 import hashlib
 import json
+import os
+import pathlib
 import re
 import subprocess
 
-from run_errors import InputError
-from run_statistics import hash_file
+from paper_tables.definitions import MODES
+from paper_tables.engine import DIGITS, RESULT_VERSION
+from support import SCRIPTS, InputError, hash_file, read_text
 
-DIGITS = 16  # of a fingerprint in the name of a file
-RESULT_VERSION = 1  # of the files that runs leave; a new one repeats all runs
-PROGRAM = {("tum", "rgbd"): "rgbd_tum", ("tum", "mono"): "mono_tum",
-           ("icl", "rgbd"): "rgbd_icl", ("icl", "mono"): "mono_icl"}
+ESTIMATORS = ("rgbd_tum", "mono_tum", "rgbd_icl", "mono_icl")
 
 
 def digest(*parts):
@@ -33,23 +33,37 @@ class Request:
     """What the user asks for."""
     definitions: object
     sequences: list
-    tables: tuple  # names
-    modes: tuple
-    seeds: range
+    tables: tuple = ()  # names
+    modes: tuple = MODES
+    seeds: range = range(1)
     frames: int = None  # None: all
     is_quick: bool = False
     timeout: float = 3600.0
 
 
-class Tools:
-    """The programs and files of HullSLAM that runs depend on."""
+def chosen(text, known, option):
+    """The names in a text like a,b, in the order of `known`; all without a text."""
+    names = list(known) if text is None else [name.strip() for name in text.split(",") if name.strip()]
+    for name in names or [""]:
+        if name not in known:
+            raise InputError(f"{option}: '{name}' is unknown, expected some of: {', '.join(known)}")
+    return tuple(name for name in known if name in names)
 
-    def __init__(self, programs, scripts, config):
-        self.programs, self.scripts, self.config = programs, scripts, config
+
+class Tools:
+    """The programs and files of HullSLAM that runs depend on. `others` has the programs that evaluate
+    and render, which should be the same for all builds that are compared."""
+
+    def __init__(self, programs, scripts=SCRIPTS, config=None, others=None):
+        self.programs, self.scripts, self.others = programs, scripts, others or programs
+        # The settings that belong to a build are those of its checkout, if it is one.
+        own = programs.parents[2] / "config" if others and len(programs.parents) > 2 else None
+        default = own if own and own.is_dir() else SCRIPTS.parent / "config"
+        self.config = pathlib.Path(config or os.environ.get("HULLSLAM_CONFIG") or default).resolve()
         self.hashes = {}
 
     def path(self, name):
-        path = self.programs / name
+        path = (self.programs if name in ESTIMATORS else self.others) / name
         if not path.is_file():
             raise InputError(f"{path}: no such program; build it (cmake --build --preset release) "
                              "or give its folder by --programs")
@@ -61,11 +75,17 @@ class Tools:
             self.hashes[path] = digest([hash_file(file) for file in (path, *libraries(path))])
         return self.hashes[path]
 
+    def hash_with_others(self, files, others):
+        """The hashes of files and of the files others(text of a file), and so on."""
+        for path in files:  # grows while it is read
+            files += [other for other in dict.fromkeys(others(read_text(path))) if other not in files]
+        return [self.hash(path) for path in files]
+
     def preset_file(self, name):
         """The file of a preset: one of those of HullSLAM, or a path."""
         path = self.config / "presets" / f"{name}.yaml"
         if not path.is_file() and name.endswith(".yaml"):
-            path = type(path)(name)
+            path = pathlib.Path(name)
         if not path.is_file():
             known = sorted(file.stem for file in (self.config / "presets").glob("*.yaml"))
             raise InputError(f"unknown preset '{name}', expected one of: "
@@ -76,25 +96,15 @@ class Tools:
         """The hashes of the files of the presets among the arguments, and of those that they are
         based on."""
         names = [name for option, name in zip(arguments, arguments[1:]) if option == "--preset"]
-        files = []
-        for name in names:  # grows while it is read
-            path = self.preset_file(name)
-            if path not in files:
-                files.append(path)
-                names += re.findall(r"^preset\.base:\s*(\S+)", path.read_text(encoding="utf-8"),
-                                    re.MULTILINE)
-        return [self.hash(path) for path in files]
+        bases = re.compile(r"^preset\.base:\s*(\S+)", re.MULTILINE)
+        return self.hash_with_others(list(map(self.preset_file, names)),
+                                     lambda text: map(self.preset_file, bases.findall(text)))
 
     def script_hash(self, script):
         """The hashes of a script and of the other scripts that it imports."""
-        files = [script]
-        for path in files:  # grows while it is read
-            for name in re.findall(r"^(?:from|import) (\w+)", path.read_text(encoding="utf-8"),
-                                   re.MULTILINE):
-                other = self.scripts / f"{name}.py"
-                if other.is_file() and other not in files:
-                    files.append(other)
-        return [self.hash(path) for path in files]
+        imports = re.compile(r"^(?:from|import) (\w+)", re.MULTILINE)
+        return self.hash_with_others([script], lambda text: [
+            path for name in imports.findall(text) if (path := self.scripts / f"{name}.py").is_file()])
 
     def vocabulary_hash(self):
         path = self.config.parent / "Vocabulary" / "hullslam.bow"
@@ -107,7 +117,7 @@ def libraries(program):
         if file.read(4) != b"\x7fELF":
             return []
     found = subprocess.run(["ldd", program], capture_output=True, text=True, check=False).stdout
-    return [type(program)(path) for path in re.findall(r"=> (\S*/libhullslam\S*)", found)]
+    return [pathlib.Path(path) for path in re.findall(r"=> (\S*/libhullslam\S*)", found)]
 
 
 # ---- one run
@@ -119,11 +129,15 @@ class Planner:
         self.runs, self.folders = {}, {}
         self.names = {}  # what makes a run different from others -> its name
 
-    def add(self, sequence, mode, variant, seed, degradation=None, level=None):
+    def plan(self):
+        return {"version": RESULT_VERSION, "config": str(self.tools.config),
+                "evaluate": str(self.tools.path("evaluate")), "timeout": self.request.timeout,
+                "runs": self.runs, "folders": self.folders}
+
+    def add(self, sequence, mode, variant, seed, degradation=None, level=None, last=None):
         """The name of the run; None if there is none, with the reason."""
-        variants = self.request.definitions.variants
         if variant.same_as and not sequence.has_rolling_shutter:
-            variant = variants[variant.same_as]
+            variant = self.request.definitions.variants[variant.same_as]
         if mode not in sequence.modes:
             return None, ("the sequence has no depth" if mode == "rgbd" else
                           "a quick run has this sequence only with depth")
@@ -131,13 +145,15 @@ class Planner:
             return None, f"{variant.label} does not run in this mode"
         if variant.masks and sequence.masks is None:
             return None, "the sequence has no masks"
+        if last is None and self.request.frames:
+            last = seed + self.request.frames - 1
         key = json.dumps([sequence.name, mode, seed, variant.arguments, variant.masks,
-                          degradation.name if degradation else "", level])
+                          degradation.name if degradation else "", level, last])
         if key not in self.names:
-            self.names[key] = self.make(sequence, mode, variant, seed, degradation, level)
+            self.names[key] = self.make(sequence, mode, variant, seed, degradation, level, last)
         return self.names[key], ""
 
-    def make(self, sequence, mode, variant, seed, degradation, level):
+    def make(self, sequence, mode, variant, seed, degradation, level, last):
         # A degraded sequence is another sequence, whereas other arguments are another variant.
         suffix = f"+{degradation.name}-{level}" if degradation else ""
         is_other_sequence, settings = bool(degradation and degradation.options), []
@@ -151,83 +167,60 @@ class Planner:
             # The name of the new folder does not tell the camera, as that of the recording may.
             settings = ["--settings", sequence.settings] if sequence.settings else []
         extra = [item.format(level=level) for item in degradation.arguments] if degradation else []
-        arguments = [*variant.arguments, *extra, *self.frame_arguments(sequence, seed),
-                     "--seed", str(seed)]
+        # Runs of a recorded sequence differ by their first frame.
+        part = [] if sequence.rendered else ["--first", str(seed), *(["--last", str(last)] if last else [])]
+        arguments = [*variant.arguments, *extra, *part, "--seed", str(seed)]
         if variant.masks:
             inputs.append(sequence.masks_fingerprint)
-        program = PROGRAM[sequence.dataset, mode]
+        program = f"{mode}_{sequence.dataset}"
         name = "/".join((sequence.name + (suffix if is_other_sequence else ""), mode,
                          variant.name + ("" if is_other_sequence else suffix), f"seed-{seed}"))
         self.runs[name] = {
             "sequence": sequence.name, "mode": mode, "variant": variant.name, "seed": seed,
-            "degradation": degradation and degradation.name, "level": level,
-            "folder": source, "frames": self.frames(sequence),
+            "degradation": degradation and degradation.name, "level": level, "folder": source,
+            "frames": min(sequence.frames, last - seed + 1 if last else sequence.frames),
             "command": [str(self.tools.path(program)), folder, *settings, *arguments,
                         *(("--masks", masks) if variant.masks else ()), "--quiet"],
             "groundtruth": f"{folder}/groundtruth.txt" if sequence.dataset == "tum" else None,
             "objects": sequence.path("objects", seed),
             "fingerprint": digest(RESULT_VERSION, program, arguments, variant.masks, inputs,
-                                  self.tools.hash(self.tools.path(program)),
-                                  self.tools.hash(self.tools.path("evaluate")),
-                                  self.tools.preset_hash(arguments),
-                                  self.tools.vocabulary_hash())}
+                                  *(self.tools.hash(self.tools.path(tool))
+                                    for tool in (program, "evaluate")),
+                                  self.tools.preset_hash(arguments), self.tools.vocabulary_hash())}
         return name
-
-    def frame_arguments(self, sequence, seed):
-        """Runs of a recorded sequence differ by their first frame."""
-        if sequence.rendered is not None:
-            return []
-        last = ["--last", str(seed + self.request.frames - 1)] if self.request.frames else []
-        return ["--first", str(seed), *last]
-
-    def frames(self, sequence):
-        return min(sequence.frames, self.request.frames or sequence.frames)
 
     def add_rendering(self, sequence, seed):
         """The name of the folder that must be rendered first; None for a recorded sequence."""
         if sequence.rendered is None:
             return None
         name = sequence.rendered["suite"].replace("{seed}", str(seed))
-        if name not in self.folders:
-            program = self.tools.path("make_synthetic")
-            options = ["--seed", str(seed), *sequence.rendered["options"]]
-            self.folders[name] = {
-                "kind": "rendered", "frames": sequence.frames,
-                "command": [str(program), "--suite", "{folder}", *options, "--threads", "1",
-                            "--quiet"],
-                "source": None, "fingerprint": digest(RESULT_VERSION, self.tools.hash(program),
-                                                      options)}
+        program = self.tools.path("make_synthetic")
+        options = ["--seed", str(seed), *sequence.rendered["options"]]
+        self.folders[name] = {
+            "kind": "rendered", "frames": sequence.frames, "source": None,
+            "command": [str(program), "--suite", "{folder}", *options, "--threads", "1", "--quiet"],
+            "fingerprint": digest(RESULT_VERSION, self.tools.hash(program), options)}
         return name
 
     def add_degraded(self, sequence, seed, folder, masks, degradation, level):
         """The name of the folder with a degraded sequence. Recorded sequences have one for all
         first frames."""
-        rendering = self.add_rendering(sequence, seed)
+        rendering, script = self.add_rendering(sequence, seed), self.tools.scripts / "degrade_sequence.py"
         seed = seed if rendering else 0
-        script = self.tools.scripts / "degrade_sequence.py"
         options = [*(item.format(level=level) for item in degradation.options), "--seed", str(seed)]
         source = self.folders[rendering]["fingerprint"] if rendering else sequence.fingerprint
         made_of = digest(RESULT_VERSION, self.tools.script_hash(script), options, source,
                          sequence.masks_fingerprint)
         # The folder is removed after its runs, so its name tells what it was made from.
-        name = (f"degraded/{sequence.name}+{degradation.name}-{level}/seed-{seed}-"
-                f"{made_of[:DIGITS]}")
+        name = f"degraded/{sequence.name}+{degradation.name}-{level}/seed-{seed}-{made_of[:DIGITS]}"
         self.folders[name] = {
             "kind": "degraded", "frames": sequence.frames, "source": rendering,
-            "command": [str(script), folder, "{folder}", *options,
-                        *(("--masks", masks) if masks else ())],
+            "command": [str(script), folder, "{folder}", *options, *(("--masks", masks) if masks else ())],
             "fingerprint": made_of}
         return name
 
 
-# ---- the runs of the tables
-
-
-def sequences_of(table, request):
-    """The sequences that a table shows."""
-    found = [sequence for sequence in request.sequences
-             if table.only is None or sequence.paper is None or sequence.paper in table.only]
-    return found[:table.sequences]
+# ---- the runs of tables and cases
 
 
 def levels_of(table, request, mode):
@@ -251,8 +244,7 @@ def cell_runs(table, request, planner, sequence, mode):
         for row in table.rows:
             variant = request.definitions.variants[row.variant]
             if degradation and degradation.only_with_objects and not variant.objects:
-                found = {seed: (None, "the masks of objects do not matter")
-                         for seed in request.seeds}
+                found = dict.fromkeys(request.seeds, (None, "the masks of objects do not matter"))
             else:
                 found = {seed: planner.add(sequence, mode, variant, seed, degradation, level)
                          for seed in request.seeds}
@@ -265,26 +257,31 @@ def cell_runs(table, request, planner, sequence, mode):
 
 def make_plan(request, tools):
     """(plan, cells): cells has for each table name, mode and sequence name its cells."""
-    planner = Planner(request, tools)
-    cells = {}
+    planner, cells = Planner(request, tools), {}
     for name in request.tables:
         table = request.definitions.tables[name]
-        for mode in table.modes:
+        shown = [sequence for sequence in request.sequences
+                 if None in (table.only, sequence.paper) or sequence.paper in table.only]
+        for mode in table.modes if shown else ():
             if mode in request.modes:
-                for sequence in sequences_of(table, request):
-                    cells[name, mode, sequence.name] = cell_runs(table, request, planner, sequence,
-                                                                 mode)
-    plan = {"version": RESULT_VERSION, "config": str(tools.config),
-            "evaluate": str(tools.path("evaluate")), "timeout": request.timeout,
-            "runs": planner.runs, "folders": planner.folders}
-    return plan, cells
+                for sequence in shown[:table.sequences]:
+                    cells[name, mode, sequence.name] = cell_runs(table, request, planner, sequence, mode)
+    return planner.plan(), cells
 
 
-def result_file(name, run):
-    """Where the result of a run is. A changed input gives another name, so the run is repeated."""
-    return f"runs/{name}/result-{run['fingerprint'][:DIGITS]}.json"
-
-
-def folder_output(name, folder):
-    """The path that shows that a folder is complete and was made from the present inputs."""
-    return name if folder["kind"] == "degraded" else f"{name}.made-{folder['fingerprint'][:DIGITS]}"
+def add_case(planner, case, sequence, firsts):
+    """Adds the runs of a case of the gate with these first frames. Each run also tells its case."""
+    known, former = planner.request.definitions, set(planner.runs)
+    degradation = case.degradation and known.degradations[case.degradation]
+    planner.names.clear()  # the same run in two cases is a mistake, as it would count twice
+    runs, planner.runs = planner.runs, {}
+    for first in firsts:
+        for mode in case.modes:
+            for variant in case.variants:
+                planner.add(sequence, mode, known.variants[variant], first, degradation,
+                            degradation.levels[0] if degradation else None, case.last)
+    for name, run in planner.runs.items():
+        if name in former:
+            raise InputError(f"the cases {runs[name]['case']} and {case.name} have the same run {name}")
+        runs[name] = {**run, "case": case.name, "input": sequence.fingerprint[:DIGITS]}
+    planner.runs = runs

@@ -1,24 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The recorded sequences that the user has: where they are, and whether they are complete."""
+"""The sequences of experiments: recorded ones, where they are and whether they are complete, and those
+that make_synthetic renders."""
 
 import dataclasses
 import hashlib
 import pathlib
 import re
+import subprocess
+import tempfile
 
-from leave_and_return import read_rows
-from run_errors import InputError
-from run_statistics import hash_file
+from support import InputError, hash_file, one_line, read_json, read_text, try_read_json
+from tum_and_icl import read_rows
 
 PNG_END, JPEG_END = b"IEND\xaeB`\x82", b"\xff\xd9"
 IMAGES = {".png", ".jpg", ".jpeg"}
 PREFIX = "rgbd_dataset_"  # of the folders of TUM RGB-D
+FRAMES = 300  # of a sequence of the suite, unless --frames says otherwise
+LISTING_FRAMES = "2"  # enough to learn which sequences there are
 
 
 @dataclasses.dataclass
 class Sequence:
-    """A sequence. The paths of a rendered one are relative to the output folder and contain
-    {seed}."""
+    """A sequence. The paths of a rendered one are relative to the output folder and contain {seed}."""
     name: str
     dataset: str  # tum or icl
     paper: str = None  # the sequence of the paper that it is, or whose part it plays
@@ -48,10 +51,8 @@ def short_name(folder):
 
 def paper_name(name, paper_sequences):
     """The sequence of the paper with this name, such as freiburg1_desk or fr1_desk."""
-    for paper, original in paper_sequences.items():
-        if name in (original, paper, paper.replace("-", "_")):
-            return paper
-    return None
+    return next((paper for paper, original in paper_sequences.items()
+                 if name in (original, paper, paper.replace("-", "_"))), None)
 
 
 # ---- what is in a folder
@@ -66,41 +67,30 @@ def find_dataset(folder):
         return "tum"
     if (folder / "associations.txt").is_file() or any(folder.glob("scene_00_*.png")):
         return "icl"
-    rgb = folder / "rgb"
-    if rgb.is_dir() and any(path.suffix.lower() in IMAGES for path in rgb.iterdir()):
-        return "tum"
-    return None
+    return "tum" if any(path.suffix.lower() in IMAGES for path in folder.glob("rgb/*")) else None
 
 
 def listed_images(folder, dataset):
-    """(list, number of the line or None, path) of each image that a list of the sequence names."""
-    found = []
-    if dataset == "tum":
-        for name in ("rgb.txt", "depth.txt"):
-            path = folder / name
-            if path.is_file():
-                found += [(path, folder / words[0]) for _, words in read_rows(path)]
-    elif (folder / "associations.txt").is_file():
-        path = folder / "associations.txt"
-        for _, words in read_rows(path):
-            if len(words) < 3:
-                raise InputError(f"{path}: expected lines: index depth index rgb")
-            found += [(path, folder / words[0]), (path, folder / words[2])]
+    """(list, path) of each image that a list of the sequence names; without lists (folder, path)."""
+    found, rows = [], {}
+    for name in ("rgb.txt", "depth.txt") if dataset == "tum" else ("associations.txt",):
+        if (folder / name).is_file():
+            rows[folder / name] = [words for _, words in read_rows(folder / name)]
+    for path, lines in rows.items():
+        if dataset == "icl" and any(len(words) < 3 for words in lines):
+            raise InputError(f"{path}: expected lines: index depth index rgb")
+        found += [(path, folder / words[i]) for words in lines
+                  for i in ((0,) if dataset == "tum" else (0, 2))]
     patterns = ("rgb/*", "depth/*") if dataset == "tum" else ("scene_00_*",)
     return found or [(folder, path) for pattern in patterns for path in sorted(folder.glob(pattern))
                      if path.suffix.lower() in IMAGES]
 
 
 def is_whole(path):
-    """Whether an image file is there and ends as its format demands."""
-    try:
-        with path.open("rb") as file:
-            file.seek(0, 2)
-            size = file.tell()
-            file.seek(max(0, size - 1024))
-            end = file.read()
-    except OSError:
-        return False
+    """Whether an image file ends as its format demands."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - 1024))
+        end = file.read()
     return end.endswith(PNG_END) if path.suffix.lower() == ".png" else JPEG_END in end
 
 
@@ -108,10 +98,10 @@ def check_images(folder, dataset):
     """Refuses a sequence whose images are missing or cut short. Returns the images."""
     try:
         images = listed_images(folder, dataset)
+        missing = [(source, path) for source, path in images if not path.is_file()]
+        cut = [] if missing else [(source, path) for source, path in images if not is_whole(path)]
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{folder}: cannot be read: {error}") from error
-    missing = [(source, path) for source, path in images if not path.is_file()]
-    cut = [(source, path) for source, path in images if path.is_file() and not is_whole(path)]
     for faults, what in ((missing, "are missing"), (cut, "are cut short")):
         if faults:
             source, path = faults[0]
@@ -120,10 +110,6 @@ def check_images(folder, dataset):
                 f"sequence {what}, the first one is {path.relative_to(folder)} (in {source.name}); "
                 "download it again")
     return [path for _, path in images]
-
-
-def has_depth(folder, dataset):
-    return dataset == "icl" or (folder / "depth.txt").is_file() or (folder / "depth").is_dir()
 
 
 def find_masks(folder, wanted, name):
@@ -135,26 +121,19 @@ def find_masks(folder, wanted, name):
         if not path.exists():
             raise InputError(f"{path}: does not exist; --masks is '{wanted}'")
         return path
-    if (folder / "masks").exists():
-        return folder / "masks"
-    found = sorted(folder.glob("masks*"))
+    found = [folder / "masks"] if (folder / "masks").exists() else sorted(folder.glob("masks*"))
     if len(found) > 1:
         raise InputError(f"{folder}: has {' and '.join(path.name for path in found)}; say by "
                          "--masks which of them to use")
     return found[0] if found else None
 
 
-# ---- settings and fingerprints
-
-
 def settings_file(folder, dataset, config):
     """The settings that a run takes without --settings (docs/settings.md); None without any."""
-    if (folder / "camera.yaml").is_file():
-        return folder / "camera.yaml"
-    if dataset == "icl":
-        return config / "ICL.yaml"
     match = re.search(r"fr(?:eiburg)?([123])", folder.resolve().name)
-    return config / f"TUM{match[1]}.yaml" if match else None
+    name = "ICL.yaml" if dataset == "icl" else f"TUM{match[1]}.yaml" if match else None
+    path = folder / "camera.yaml" if (folder / "camera.yaml").is_file() else name and config / name
+    return path if path and path.is_file() else None
 
 
 def has_rolling_shutter(settings):
@@ -180,17 +159,14 @@ def fingerprint(folder, images, settings):
 
     The contents of images are not read, because those of a large sequence take minutes.
     """
-    digest = hashlib.sha256()
     texts = sorted(path for path in folder.iterdir()
                    if path.suffix in (".txt", ".freiburg", ".yaml") and path.is_file())
-    for path in [*texts, *([settings] if settings else [])]:
-        digest.update(f"{path.name}\0{hash_file(path)}\n".encode())
-    for path in images:
-        digest.update(f"{path.relative_to(folder)}\0{path.stat().st_size}\n".encode())
-    return digest.hexdigest()
+    lines = [f"{path.name}\0{hash_file(path)}\n" for path in [*texts, settings]]
+    lines += [f"{path.relative_to(folder)}\0{path.stat().st_size}\n" for path in images]
+    return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
-# ---- the sequences of a table run
+# ---- recorded sequences
 
 
 def read_sequence(text, masks, paper_sequences, config):
@@ -207,18 +183,17 @@ def read_sequence(text, masks, paper_sequences, config):
     if not images:
         raise InputError(f"{folder}: has no images")
     settings = settings_file(folder, dataset, config)
-    if settings is None or not settings.is_file():
+    if settings is None:
         raise InputError(f"{folder}: its camera is not known; put its settings into camera.yaml in "
                          "this folder (docs/settings.md)")
     name = short_name(folder)
-    path = find_masks(folder, masks, name)
-    objects = folder / "groundtruth_objects.json"
-    depth = has_depth(folder, dataset)
+    path, objects = find_masks(folder, masks, name), folder / "groundtruth_objects.json"
+    has_depth = dataset == "icl" or (folder / "depth.txt").is_file() or (folder / "depth").is_dir()
     return Sequence(name, dataset, paper_name(name, paper_sequences), str(folder.resolve()),
                     str(path.resolve()) if path else None,
                     str(objects.resolve()) if objects.is_file() else None,
-                    modes=("rgbd", "mono") if depth else ("mono",),
-                    frames=len(images) // 2 if depth else len(images),
+                    modes=("rgbd", "mono") if has_depth else ("mono",),
+                    frames=len(images) // 2 if has_depth else len(images),
                     settings=str(settings.resolve()),
                     has_rolling_shutter=has_rolling_shutter(settings),
                     fingerprint=fingerprint(folder, images, settings),
@@ -239,23 +214,15 @@ def find_sequences(data):
 
 
 def read_list(path):
-    """The sequences that a text file lists, one [tum=|icl=]FOLDER per line; # begins a comment.
-
-    Folders are relative to the file.
-    """
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from error
+    """The sequences that a text file lists, one [tum=|icl=]FOLDER per line, relative to the file; #
+    begins a comment."""
     found = []
-    for number, line in enumerate(lines, 1):
-        line = line.split("#")[0].strip()
-        if line:
-            dataset, equals, folder = line.rpartition("=")
-            folder = path.parent / folder
-            if not folder.is_dir():
-                raise InputError(f"{path}:{number}: {folder} is no folder")
-            found.append(f"{dataset}{equals}{folder}")
+    for number, line in enumerate(read_text(path).splitlines(), 1):
+        dataset, equals, folder = line.split("#")[0].strip().rpartition("=")
+        if folder:
+            if not (path.parent / folder).is_dir():
+                raise InputError(f"{path}:{number}: {path.parent / folder} is no folder")
+            found.append(f"{dataset}{equals}{path.parent / folder}")
     if not found:
         raise InputError(f"{path}: lists no sequence")
     return found
@@ -271,3 +238,84 @@ def in_order(sequences, paper_sequences):
                              f"'{sequence.name}'")
     order = list(paper_sequences)
     return sorted(sequences, key=lambda s: order.index(s.paper) if s.paper else len(order))
+
+
+# ---- rendered sequences
+
+
+def call_renderer(program, options):
+    """Renders a sequence or a suite. make_synthetic leaves a folder only when it is complete."""
+    result = subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise InputError(f"{program} {' '.join(options)}: "
+                         f"{one_line(result.stderr.strip() or 'has failed', 300)}")
+
+
+def suite_file(program, cache):
+    """The content of suite.json: that of the file `cache`, else from a rendering of very few frames."""
+    if (known := try_read_json(cache)) is not None:
+        return known
+    with tempfile.TemporaryDirectory() as folder:
+        target = pathlib.Path(folder) / "suite"
+        call_renderer(program, ["--suite", str(target), "--frames", LISTING_FRAMES, "--quiet"])
+        return read_json(target / "suite.json")
+
+
+def read_suite(content, paper_sequences, frames):
+    """The sequences that a suite.json lists. Each is rendered by itself, for each seed."""
+    found = []
+    try:
+        for entry in content["sequences"]:
+            name, paper = entry["name"], entry["plays"]
+            suite = f"sequences/{name}/seed-{{seed}}{'' if frames is None else f'-frames-{frames}'}"
+            found.append(Sequence(
+                name, entry["dataset"], paper if paper in paper_sequences else None,
+                *(f"{suite}/{entry[key]}" for key in ("folder", "masks", "objects")),
+                note=entry["special"], frames=frames or FRAMES,
+                has_rolling_shutter=entry["readout_time"] != 0.0,
+                rendered={"suite": suite, "options": ["--only", name, *(
+                    ["--frames", str(frames)] if frames else [])]}))
+    except (KeyError, TypeError, AttributeError) as error:
+        reason = f"no key {error}" if isinstance(error, KeyError) else one_line(error)
+        raise InputError(f"suite.json of make_synthetic: not as expected: {reason}") from error
+    return found
+
+
+# ---- sequences of the cases of the gate
+
+
+def rendering_folder(case, seed, renderings):
+    """Where what a case needs is rendered: alone, unless the whole suite is there."""
+    whole = renderings / f"suite-{seed}"
+    is_whole = case.source == "suite" and whole.is_dir()
+    return whole if is_whole else renderings / f"{case.sequence}-{seed}"
+
+
+def needed_renderings(definitions, cases, renderings):
+    """{folder: options} of the renderings of the cases that are not there."""
+    found = {}
+    for case in cases:
+        for seed in case.seeds if case.source != "recorded" else ():
+            folder = rendering_folder(case, seed, renderings)
+            options = ["--suite", str(folder), "--only", case.sequence] \
+                if case.source == "suite" else [str(folder), *definitions.renderings[case.sequence]]
+            if not folder.exists():
+                found[folder] = [*options, "--seed", str(seed), "--quiet"]
+    return found
+
+
+def find_sequence(case, seed, data, renderings, config):
+    """The sequence of a case; None if a recorded one is absent."""
+    if case.source == "recorded":
+        folder = data / case.sequence
+        return read_sequence(str(folder), None, {}, config) if folder.is_dir() else None
+    top, name = rendering_folder(case, seed, renderings), f"{case.sequence}-{seed}"
+    if case.source == "rendering":
+        return dataclasses.replace(read_sequence(str(top), None, {}, config), name=name)
+    entry = next((entry for entry in read_json(top / "suite.json").get("sequences", [])
+                  if entry["name"] == case.sequence), None)
+    if entry is None:
+        raise InputError(f"{top}: has no sequence {case.sequence}")
+    sequence = read_sequence(f"{entry['dataset']}={top / entry['folder']}",
+                             str((top / entry["masks"]).resolve()), {}, config)
+    return dataclasses.replace(sequence, name=name, objects=str((top / entry["objects"]).resolve()))

@@ -3,8 +3,8 @@
 
 import dataclasses
 
-from paper_tables.cells import columns_of, level_text, median_run
 from paper_tables.figures import FIGURES
+from paper_tables.tables import COMPARED, MODE_TITLES, columns_of, median_run
 
 DASH = "–"
 
@@ -31,47 +31,25 @@ def number(value, figure):
     return DASH if value is None else f"{value * figure.factor:.{figure.digits}f}"
 
 
-def range_text(entry, figure):
-    """The median, and the smallest and largest value of several runs."""
-    if entry is None:
-        return DASH
-    text = number(entry["median"], figure)
-    if len(entry["values"]) > 1:
-        text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
-    return text
-
-
-def percent(change):
-    return f"{100 * change:+.1f} %"
-
-
 def difference_text(change, figure):
     """A difference with its p and the number of pairs."""
     if change is None:
         return DASH
-    text = percent(change["change"]) if change["is_relative"] else \
+    text = f"{100 * change['change']:+.1f} %" if change["is_relative"] else \
         f"{change['change'] * FIGURES[figure].factor:+.{FIGURES[figure].digits}f}"
     return f"{text} (p {change['p']:.2g}, {change['pairs']} pairs)"
 
 
-def runs_text(cell):
-    """How many runs a cell has, and how many of them have failed."""
-    text = str(cell["done"])
-    if cell["failures"]:
-        text += f", {len(cell['failures'])} failed"
-    if cell["missing"]:
-        text += f", {len(cell['missing'])} not run"
-    return text
-
-
 def entry_text(cell, column, figure):
-    """A cell with the values of its runs."""
+    """The median, the smallest and the largest value of the runs of a cell."""
     entry = cell["figures"].get(column.key)
     if entry is None:
         return Text(DASH)
-    values = tuple((number(value, figure), cell["runs"][seed])
-                   for seed, value in sorted(entry["values"].items()))
-    return Text(range_text(entry, figure), cell["runs"][median_run(entry)], values=values)
+    text = number(entry["median"], figure)
+    if len(entry["values"]) > 1:
+        text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
+    return Text(text, cell["runs"][median_run(entry)], values=tuple(
+        (number(value, figure), cell["runs"][seed]) for seed, value in sorted(entry["values"].items())))
 
 
 # ---- overviews: a row for each system, a column for each sequence
@@ -81,12 +59,10 @@ def best_rows(block, sequence, column, figure):
     """The rows with the best median of a sequence, to the digits that are shown."""
     medians = {cell["row"]: number(cell["figures"][column.key]["median"], figure)
                for cell in block["sequences"][sequence] if cell["figures"].get(column.key)}
-    if len(medians) < 2 or figure.lower_is_better is None:
+    if len(set(medians.values())) < 2 or figure.lower_is_better is None:
         return set()
-    pick = min if figure.lower_is_better else max
-    best = pick(medians.values(), key=float)
-    found = {row for row, text in medians.items() if text == best}
-    return found if len(found) < len(medians) else set()
+    best = (min if figure.lower_is_better else max)(medians.values(), key=float)
+    return {row for row, text in medians.items() if text == best}
 
 
 def overview_cell(report, block, sequence, cell, best):
@@ -169,7 +145,8 @@ def detail(report, block):
             rows.append([Text(report.label(block, cell)), *texts,
                          *(Text(number(value, FIGURES[key])) for value, key in zip(
                              papers, [key for key in table.figures if key in has_paper])),
-                         Text(runs_text(cell))])
+                         Text(f"{cell['done']}" + "".join(f", {len(cell[key])} {told}" for key, told in (
+                             ("failures", "failed"), ("missing", "not run")) if cell[key]))])
     return Grid(report.title(block) + ", all figures", head, rows,
                 [*shared_runs(report, block), *reasons(report, block), *failures(report, block)])
 
@@ -215,7 +192,7 @@ def degradation_grid(report, block):
         rows.append([Text(sequence_heading(report, name))])
         for start in range(0, len(cells), len(table.rows)):
             group = cells[start:start + len(table.rows)]
-            level = level_text(table, report.definitions, group[0])
+            level = report.level(block, group[0])
             label, level = ("none", "") if level == "none" else (report.definitions.degradations[
                 group[0]["degradation"] or table.degradations[0]].label, level)
             texts = [entry_text(cell, column, figure) for cell in group
@@ -229,7 +206,7 @@ def degradation_grid(report, block):
 
 
 def grids(report, block):
-    """All grids of a block of the report."""
+    """All grids of a block of the report but that of the ranks."""
     if report.table(block).degradations:
         return [degradation_grid(report, block)]
     return [overview(report, block), detail(report, block)]
@@ -245,7 +222,7 @@ def claims_grid(report):
     for claim in report.claims:
         told = "; ".join(f"against {label(name)} {difference_text(change, claim['figure'])}"
                          for name, change in claim["than"].items())
-        rows.append([Text(claim["text"]), Text("RGB-D" if claim["mode"] == "rgbd" else "monocular"),
+        rows.append([Text(claim["text"]), Text(MODE_TITLES[claim["mode"]]),
                      Text(claim["answer"]), Text(f"{label(claim['better'])}: {told}")])
     return Grid("Claims of the paper", ["claim", "mode", "answer", "from the pairs of runs"], rows,
                 ["yes: better than each of the others, each with p of at most 0.05; no: worse than "
@@ -263,6 +240,25 @@ def ranking_grid(report, block):
     return Grid(f"{report.title(block)}: order", ["", "mean rank", "mean rank in the paper"], rows,
                 ["Ranks within each sequence, by the medians; over the sequences for which both "
                  "have figures."])
+
+
+def comparison_grid(found, labels):
+    """The grid of the differences from an older report (compare_reports())."""
+    rows = []
+    for row in found["rows"]:
+        changes = [row["figures"].get(key) for key in COMPARED]
+        name, _, level = row["variant"].partition("+")
+        rows.append([Text(labels.get(name, name) + (f" + {level}" if level else "")), Text(row["mode"]),
+                     *(Text(f"{difference_text(change, key)}, {change['verdict']}" if change else DASH)
+                       for key, change in zip(COMPARED, changes)),
+                     Text(f"{row['failed_before']} -> {row['failed_after']} of {row['common']}")])
+    old, new = (", ".join(map(str, found[key] or ["unknown"])) for key in ("old_git", "new_git"))
+    return Grid(f"Differences since {old} (now {new})",
+                ["", "mode", *(FIGURES[key].title for key in COMPARED), "failed runs"], rows,
+                ["Changes are those of pairs of runs with the same sequence, mode and seed; that of "
+                 "ATE and MTD is relative. unclear: p is above 0.05.",
+                 f"{found['only_before']} runs are only in the old report, {found['only_after']} "
+                 "only in the new one."])
 
 
 def preface(report):

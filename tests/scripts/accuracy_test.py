@@ -17,7 +17,7 @@ import fake_slam
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "accuracy.py"
 sys.path.insert(0, str(SCRIPT.parent))
 import accuracy  # noqa: E402
-from paper_tables.cases import read_cases  # noqa: E402
+from paper_tables.definitions import read_definitions  # noqa: E402
 
 CASES = """
 variants: {points: {masks: false}, objects: {}}
@@ -194,12 +194,12 @@ class AccuracyTest(unittest.TestCase):
                 self.assertIn(part, self.run_script("--list", code=2).stderr)
 
     def test_the_cases_of_this_project(self):
-        found = read_cases(SCRIPT.parent / "paper_tables" / "accuracy.yaml")
+        found = read_definitions(SCRIPT.parent / "paper_tables" / "accuracy.yaml", "cases")
         suite = {case.sequence for case in found.cases.values() if case.source == "suite"}
         self.assertEqual(len(suite), 10)
         self.assertEqual({name for name, case in found.cases.items() if len(case.first) == 10},
                          {"walls"})
-        self.assertEqual(set(found.definitions.degradations),
+        self.assertEqual(set(found.degradations),
                          {case.degradation for case in found.cases.values()} - {None})
         self.assertEqual(set(found.renderings), {case.sequence for case in found.cases.values()
                                                  if case.source == "rendering"})

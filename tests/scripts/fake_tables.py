@@ -60,7 +60,7 @@ class TablesTest(unittest.TestCase):
 
     def run_script(self, *arguments, **options):
         return subprocess.run(self.command(*arguments, **options), capture_output=True, text=True,
-                              check=False, timeout=100)
+                              check=False, timeout=500)
 
     def succeed(self, *arguments, **options):
         result = self.run_script(*arguments, **options)

@@ -15,7 +15,7 @@ import numpy as np
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 from paper_tables.gate import Comparison, figures_of_poses, frame_line  # noqa: E402
-from run_alignment import align, align_most, move  # noqa: E402
+from run_alignment import align, align_most, move, pair  # noqa: E402
 
 CASES, RUNS = 12, 3
 
@@ -171,6 +171,30 @@ class ComparisonTest(unittest.TestCase):
 def statistics_median(ratios):
     logs = sorted(map(math.log, ratios))
     return (logs[1] + logs[2]) / 2.0
+
+
+class AlignmentTest(unittest.TestCase):
+    def setUp(self):
+        self.points = np.random.default_rng(1).normal(size=(20, 3))
+        self.turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+
+    def test_recovers_a_motion_and_a_scale_if_asked_for(self):
+        for scale in (1.0, 2.5):
+            moved = scale * self.points @ self.turn.T + [1, 2, 3]
+            found = align(self.points, moved, scale != 1.0)
+            self.assertAlmostEqual(found[0], scale)
+            np.testing.assert_allclose(found[1], self.turn, atol=1e-12)
+            np.testing.assert_allclose(found[2], [1, 2, 3], atol=1e-12)
+        self.assertEqual(align(self.points, moved)[0], 1.0)
+
+    def test_never_mirrors(self):
+        _, rotation, _ = align(self.points, self.points * [1, 1, -1])
+        self.assertAlmostEqual(np.linalg.det(rotation), 1.0)
+
+    def test_pairs_are_one_to_one_and_the_nearest_first(self):
+        pairs = pair(np.array([1.0, 1.012, 5.0]), np.array([0.5, 1.010, 5.03]))
+        self.assertEqual(pairs.tolist(), [[1, 1]])
+        self.assertEqual(len(pair(np.array([1.0]), np.array([2.0]))), 0)
 
 
 class PosesTest(unittest.TestCase):

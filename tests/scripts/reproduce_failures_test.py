@@ -120,7 +120,7 @@ class BadInputTest(TablesTest):
             self.assertIn(f"note: {data / name} is no sequence and is left out", result.stderr)
 
     def test_without_snakemake(self):
-        command = self.command("--seeds", 1)
+        command = self.command("--seeds", 1, "--profile", "slurm")
         result = subprocess.run(command, capture_output=True, text=True, check=False,
                                 env={"PATH": str(self.dir)})
         self.assert_refused(result, "snakemake is not installed; run scripts/setup.sh")

@@ -104,7 +104,7 @@ class ResumeTest(TablesTest):
         self.succeed("--seeds", 1)
 
     def test_a_part_of_a_degraded_sequence_is_not_used(self):
-        """As a kill leaves it while Snakemake removes the sequence."""
+        """As a kill leaves it while the sequence is removed."""
         arguments = ("--seeds", 1, "--tables", "VI")
         self.succeed(*arguments)
         before = self.files()
@@ -118,29 +118,6 @@ class ResumeTest(TablesTest):
             result.unlink()
         self.succeed(*arguments)
         self.assertEqual(self.files(), before)
-
-    def test_goes_on_if_snakemake_ends_with_jobs_left(self):
-        """Twice; at the third time it gives up, for it makes no progress."""
-        tools = self.dir / "tools"
-        tools.mkdir()
-        count = tools / "count"
-        program = tools / "snakemake"
-        program.write_text(f"""#!/bin/sh
-echo >> {count}
-[ $(wc -l < {count}) -gt $JOBS_LEFT ] && exec {shutil.which("snakemake")} "$@"
-echo "BUG: Out of jobs ready to be started, but not all files built yet. Please check"
-exit 1
-""")
-        program.chmod(0o755)
-        os.environ["PATH"] = f"{tools}:{os.environ['PATH']}"
-        self.addCleanup(os.environ.update, PATH=os.environ["PATH"].partition(":")[2])
-        self.addCleanup(os.environ.pop, "JOBS_LEFT")
-        os.environ["JOBS_LEFT"] = "3"
-        result = self.run_script("--seeds", 1, "--tables", "I")
-        self.assert_refused(result, "not all files built yet", code=1)
-        count.unlink()
-        os.environ["JOBS_LEFT"] = "2"
-        self.succeed("--seeds", 1, "--tables", "I")
 
     def test_tables_so_far(self):
         self.succeed("--seeds", 1, "--tables", "I")

@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of scripts/run_statistics.py."""
 
-import hashlib
 import pathlib
 import sys
-import tempfile
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
@@ -39,41 +37,6 @@ class ComparisonTest(unittest.TestCase):
         self.assertAlmostEqual(change, 1.0)
         self.assertEqual((p, pairs), (1.0, 1))
         self.assertEqual(run_statistics.compare({"a 0": 1.0}, {}), (None, None, 0))
-
-
-class SummaryTest(unittest.TestCase):
-    def test_only_numbers_are_figures(self):
-        summary = {"a": {"b": 2, "c": True, "d": None, "e": "3"}, "f": [1]}
-        self.assertEqual(run_statistics.value_at(summary, ("a", "b")), 2.0)
-        for keys in (("a",), ("a", "c"), ("a", "d"), ("a", "e"), ("f", "g"), ("x", "y")):
-            self.assertIsNone(run_statistics.value_at(summary, keys), keys)
-
-
-class FileTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.path = pathlib.Path(folder.name) / "file.json"
-
-    def test_a_broken_file_has_no_content(self):
-        self.assertIsNone(run_statistics.try_read_json(self.path))
-        for text in ("{", "[1]", '"a"', "[" * 100000):
-            self.path.write_text(text)
-            self.assertIsNone(run_statistics.try_read_json(self.path))
-        self.path.write_bytes(b"\xff\xfe")
-        self.assertIsNone(run_statistics.try_read_json(self.path))
-
-    def test_written_files_replace_others_and_leave_nothing_else(self):
-        for text in ("{}", '{"a": 1}'):
-            run_statistics.write(self.path, text)
-            self.assertEqual(self.path.read_text(), text)
-        self.assertEqual(run_statistics.try_read_json(self.path), {"a": 1})
-        self.assertEqual(list(self.path.parent.iterdir()), [self.path])
-
-    def test_the_hash_is_that_of_all_bytes(self):
-        data = bytes(range(256)) * 8192
-        self.path.write_bytes(data)
-        self.assertEqual(run_statistics.hash_file(self.path), hashlib.sha256(data).hexdigest())
 
 
 if __name__ == "__main__":

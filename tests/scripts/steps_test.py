@@ -52,9 +52,7 @@ class StepsTest(unittest.TestCase):
                                     "--output build/demo/run --report")
         self.assertEqual(calls[-2], "evaluate objects build/demo/run --groundtruth "
                                     "build/demo/desk/groundtruth_objects.json")
-        self.assertEqual(calls[-1], "plot_run.py build/demo/run --groundtruth "
-                                    "build/demo/desk/groundtruth.txt --overlay 6 "
-                                    "--sequence build/demo/desk")
+        self.assertEqual(calls[-1], "plot_run.py build/demo/run --overlay 6")
         self.assertRegex(result.stdout.splitlines()[-1],
                          "^Open the report in a browser: file:///.*/build/demo/run/report.html$")
 

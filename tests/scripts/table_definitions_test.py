@@ -12,12 +12,11 @@ import fake_slam
 from fake_tables import DEFINITIONS, SCRIPT
 
 sys.path.insert(0, str(SCRIPT.parent))
-from paper_tables.cells import paper_value  # noqa: E402
 from paper_tables.definitions import read_definitions  # noqa: E402
 from paper_tables.sequences import (find_dataset, find_masks, has_rolling_shutter,  # noqa: E402
-                                    in_order, paper_name, read_sequence, short_name)
-from paper_tables.suite import read_suite  # noqa: E402
-from run_errors import InputError  # noqa: E402
+                                    in_order, paper_name, read_sequence, read_suite, short_name)
+from paper_tables.tables import paper_value  # noqa: E402
+from support import InputError  # noqa: E402
 
 OWN = SCRIPT.parent / "paper_tables"
 CONFIG = SCRIPT.parent.parent / "config"

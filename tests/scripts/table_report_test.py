@@ -19,11 +19,10 @@ import fake_slam
 from fake_tables import DEFINITIONS, SCRIPT
 
 sys.path.insert(0, str(SCRIPT.parent))
-from paper_tables import cells, latex, markdown, page, plots  # noqa: E402
-from paper_tables.compare import compare_reports  # noqa: E402
+from paper_tables import files, page, plots, tables  # noqa: E402
 from paper_tables.definitions import read_definitions  # noqa: E402
 from paper_tables.plan import Request, Tools, make_plan  # noqa: E402
-from paper_tables.report import Report, read_report  # noqa: E402
+from paper_tables.tables import Report, compare_reports, read_report  # noqa: E402
 from paper_tables.sequences import Sequence  # noqa: E402
 from paper_tables.text import Text, claims_grid, grids, number, ranking_grid, Grid  # noqa: E402
 from paper_tables.figures import FIGURES, of_true_objects  # noqa: E402
@@ -34,35 +33,35 @@ PAPER = {"source": "a paper & its 100 % _tables_",
 
 class StatisticsTest(unittest.TestCase):
     def test_median_and_spread(self):
-        found = cells.spread({0: 3.0, 1: None, 2: 1.0, 3: 2.0})
+        found = tables.spread({0: 3.0, 1: None, 2: 1.0, 3: 2.0})
         self.assertEqual((found["median"], found["min"], found["max"]), (2.0, 1.0, 3.0))
-        self.assertEqual(cells.median_run(found), 3)
-        self.assertIsNone(cells.spread({0: None}))
-        self.assertEqual(cells.median_run(cells.spread({4: 1.0, 2: 3.0})), 2, "of equal ones the first")
+        self.assertEqual(tables.median_run(found), 3)
+        self.assertIsNone(tables.spread({0: None}))
+        self.assertEqual(tables.median_run(tables.spread({4: 1.0, 2: 3.0})), 2, "of equal ones the first")
 
     def test_differences(self):
         base = {("a", seed): 0.010 for seed in range(6)}
         half = {("a", seed): 0.005 for seed in range(6)}
-        found = cells.difference("ate", base, half)
+        found = tables.difference("ate", base, half)
         self.assertAlmostEqual(found["change"], -0.5)
         self.assertAlmostEqual(found["p"], 2 / 64)
-        self.assertEqual(cells.verdict("ate", found), "better")
-        self.assertEqual(cells.verdict("siou", cells.difference("siou", base, half)), "worse")
+        self.assertEqual(tables.verdict("ate", found), "better")
+        self.assertEqual(tables.verdict("siou", tables.difference("siou", base, half)), "worse")
         # Less lost frames are better, and a share of 0 has no logarithm.
         zero = {key: 0.0 for key in base}
-        self.assertAlmostEqual(cells.difference("lost", base, zero)["change"], -0.010)
+        self.assertAlmostEqual(tables.difference("lost", base, zero)["change"], -0.010)
         few = {("a", 0): 0.005}
-        self.assertEqual(cells.verdict("ate", cells.difference("ate", base, few)), "unclear")
-        self.assertIsNone(cells.difference("ate", base, {("b", 0): 1.0}))
-        self.assertEqual(cells.verdict("ate", None), "unknown")
+        self.assertEqual(tables.verdict("ate", tables.difference("ate", base, few)), "unclear")
+        self.assertIsNone(tables.difference("ate", base, {("b", 0): 1.0}))
+        self.assertEqual(tables.verdict("ate", None), "unknown")
 
     def test_of_several_comparisons_the_least_favourable_decides(self):
         better, worse, unclear = ({"change": change, "p": p} for change, p in
                                   ((-0.1, 0.01), (0.1, 0.01), (-0.1, 0.4)))
-        self.assertEqual(cells.answer("ate", {"x": better, "y": better}), "yes")
-        self.assertEqual(cells.answer("ate", {"x": better, "y": unclear}), "unclear")
-        self.assertEqual(cells.answer("ate", {"x": unclear, "y": worse}), "no")
-        self.assertEqual(cells.answer("ate", {"x": better, "y": None}), "unclear")
+        self.assertEqual(tables.answer("ate", {"x": better, "y": better}), "yes")
+        self.assertEqual(tables.answer("ate", {"x": better, "y": unclear}), "unclear")
+        self.assertEqual(tables.answer("ate", {"x": unclear, "y": worse}), "no")
+        self.assertEqual(tables.answer("ate", {"x": better, "y": None}), "unclear")
 
     def test_true_objects(self):
         found = of_true_objects({"groundtruth": {"visible": 4, "once": 2, "more": 1, "each": [
@@ -142,7 +141,7 @@ class ReportTest(unittest.TestCase):
         self.assertIsNone(ranking_grid(report, report.blocks[1]), "the paper has no such figures")
 
     def test_markdown(self):
-        text = markdown.markdown(self.report())
+        text = files.markdown(self.report())
         self.assertIn("|  | desk (fr1-desk) | fr2-desk | office-traj0 | my_room | against good |", text)
         self.assertIn("| bad | 21.00 / 18.90 !1 | – | – | 21.00 / 18.90 !1 | +100.0 % (p 0.12, 4 pairs) "
                       "|", text)
@@ -155,7 +154,7 @@ class ReportTest(unittest.TestCase):
 
     def test_rows_of_a_table_have_the_same_number_of_cells(self):
         width = None
-        for line in markdown.markdown(self.report()).splitlines():
+        for line in files.markdown(self.report()).splitlines():
             count = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else None
             if count and width:
                 self.assertEqual(count, width, line)
@@ -172,7 +171,7 @@ class ReportTest(unittest.TestCase):
                                   ("rgbd", "good", "ATE Sim3, mm"): "16.100"})
 
     def test_latex_compiles(self):
-        text = latex.latex(self.report())
+        text = files.latex(self.report())
         self.assertIn(r"50 \% of the frames \& more\_lost \{were\}", text)
         self.assertIn(r"\toprule", text)
         if shutil.which("pdflatex") is None:
@@ -187,7 +186,7 @@ class ReportTest(unittest.TestCase):
 
     def test_latex_escapes_every_character(self):
         for character in "\\&%$#_{}~^<>|–é":
-            text = latex.escape(f"a{character}b")
+            text = files.escape_latex(f"a{character}b")
             self.assertTrue(text.isascii())
             self.assertNotEqual(text, f"a{character}b")
 
@@ -241,9 +240,9 @@ class ReportTest(unittest.TestCase):
     def test_a_report_without_any_result(self):
         self.results = {name: None for name in self.results}
         report = self.report()
-        self.assertIn("| – | – | 0, 3 not run |", markdown.markdown(report))
+        self.assertIn("| – | – | 0, 3 not run |", files.markdown(report))
         self.assertIn("0, 3 not run", page.page(report, self.dir, None))
-        latex.latex(report)
+        files.latex(report)
         self.assertEqual(report.claims, [])
 
     def test_comparison_with_itself_has_no_difference(self):
