@@ -103,6 +103,22 @@ void PrintUnsure(std::span<const UnsureStretch> unsure) {
       longest->last_frame);
 }
 
+void PrintMap(const MapSummary& map) {
+  Print("{} keyframes, {} landmarks{}{}\n", map.keyframes, map.landmarks,
+        map.landmarks_at_infinity > 0
+            ? fmt::format(" ({} of them as good as infinitely far away)", map.landmarks_at_infinity)
+            : "",
+        map.reprojection_px
+            ? fmt::format(", reprojection error {:.3f} px (median)", *map.reprojection_px)
+            : "");
+  if (map.contradicted_landmarks > 0) {
+    Print(
+        "{} landmarks were removed because later depth images show that nothing is there; if there "
+        "are many, something without a mask has moved\n",
+        map.contradicted_landmarks);
+  }
+}
+
 }  // namespace
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
@@ -132,14 +148,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{} keyframes, {} landmarks{}{}\n", summary.map.keyframes, summary.map.landmarks,
-        summary.map.landmarks_at_infinity > 0
-            ? fmt::format(" ({} of them as good as infinitely far away)",
-                          summary.map.landmarks_at_infinity)
-            : "",
-        summary.map.reprojection_px
-            ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
-            : "");
+  PrintMap(summary.map);
   if (summary.map.known_sizes) {
     Print("{}\n", *summary.map.known_sizes > 0
                       ? fmt::format("the unit of length is the metre (objects of known size: {})",
