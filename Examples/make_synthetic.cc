@@ -61,8 +61,8 @@ void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments)
                  "folder to create, with a TUM sequence and its ground truth")
       ->excludes(&suite);
   app.add_option("--scene", arguments.scene, "scene")
-      ->check(CLI::IsMember(
-          {"desk", "room", "lowtexture", "dynamic", "house", "twins", "rotation", "wall", "turns"}))
+      ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic", "house", "twins", "rotation",
+                             "wall", "turns", "pushed"}))
       ->excludes(&suite)
       ->capture_default_str();
   app.add_option("--rearranged", arguments.options.rearranged,

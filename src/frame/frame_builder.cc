@@ -135,6 +135,7 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   if (vocabulary_ != nullptr) {
     built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
   }
+  built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   if (detector_) {
     // The keypoints on an object are too few to show its surface.

@@ -11,13 +11,11 @@ namespace hullslam {
 FrameDetector::FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,
                              const DetectionOptions& options, std::set<std::string> dynamic_classes)
     : builder_(camera, depth.units_per_metre, options),
-      units_per_metre_(depth.units_per_metre),
       dynamic_classes_(std::move(dynamic_classes)) {}
 
 void FrameDetector::AddDetections(std::span<const InstanceMask> masks, const cv::Mat& depth,
                                   std::span<const RawKeypoint> keypoints, TaskRunner& runner,
                                   BuiltFrame& built) {
-  has_seen_masks_ |= !masks.empty();
   if (!masks.empty()) {
     std::vector<InstanceMask> of_objects;
     std::copy_if(masks.begin(), masks.end(), std::back_inserter(of_objects),
@@ -30,9 +28,6 @@ void FrameDetector::AddDetections(std::span<const InstanceMask> masks, const cv:
     }
     built.masks.detections = result.detections.size();
     built.frame->detections = std::move(result.detections);
-  }
-  if (has_seen_masks_) {
-    built.frame->depth = DepthGrid(depth, units_per_metre_);
   }
 }
 

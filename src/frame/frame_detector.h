@@ -20,17 +20,14 @@ class FrameDetector {
   FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,
                 const DetectionOptions& options, std::set<std::string> dynamic_classes);
 
-  // Adds the detections to the frame and counts the masks that gave none. From the first frame with
-  // masks on, frames also get the grid of their depth image, which tells later whether something
-  // hid an object. `depth` and `keypoints` are as in DetectionBuilder.
+  // Adds the detections to the frame and counts the masks that gave none. `depth` and `keypoints`
+  // are as in DetectionBuilder.
   void AddDetections(std::span<const InstanceMask> masks, const cv::Mat& depth,
                      std::span<const RawKeypoint> keypoints, TaskRunner& runner, BuiltFrame& built);
 
  private:
   DetectionBuilder builder_;
-  double units_per_metre_;
   std::set<std::string> dynamic_classes_;
-  bool has_seen_masks_ = false;
 };
 
 }  // namespace hullslam

@@ -10,6 +10,7 @@
 
 #include "map/correction.h"
 #include "map/islands.h"
+#include "mapping/contradicted_landmarks.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
@@ -128,6 +129,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
     if (!IsRequested(hurry)) {
       FuseLandmarks(map_, keyframe, sensor_);
     }
+    contradicted_landmarks_ += EraseContradictedLandmarks(map_, keyframe, sensor_, contradictions_);
   }
   MapObjects(keyframe);
 }

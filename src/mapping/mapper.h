@@ -14,6 +14,7 @@
 #include "hullslam/objects/object_changes.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
+#include "map/contradictions.h"
 #include "objects/object_mapper.h"
 #include "optim/bundle_result.h"
 
@@ -69,6 +70,9 @@ class Mapper {
   // map has one island only. SplitIslands fills it in.
   const std::vector<std::shared_ptr<const Map>>& left_islands() const { return left_islands_; }
 
+  // The number of landmarks that EraseContradictedLandmarks has removed.
+  size_t contradicted_landmarks() const { return contradicted_landmarks_; }
+
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
     return object_mapper_.rejections();
@@ -103,6 +107,8 @@ class Mapper {
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
+  Contradictions<LandmarkId> contradictions_;
+  size_t contradicted_landmarks_ = 0;
   size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;

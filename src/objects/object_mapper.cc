@@ -13,6 +13,7 @@
 
 #include "map/islands.h"
 #include "objects/association.h"
+#include "objects/contradicted_object.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/misfit.h"
@@ -87,7 +88,7 @@ void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
     }
   }
   FuseDuplicates(map, keyframe);
-  CullSeldomSeen(map, keyframe);
+  Cull(map, keyframe);
 }
 
 // Adds an observation for each detection of the keyframe. A detection of no known object gives a
@@ -342,30 +343,51 @@ void ObjectMapper::FuseDuplicates(Map& map, KeyframeId keyframe) {
   }
 }
 
-void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
+// The reason to remove an object that the camera could see; null if there is none.
+std::optional<Objection> ObjectMapper::ReasonToCull(const Map& map, KeyframeId keyframe,
+                                                    ObjectId id) {
   const CullingOptions& culling = options_.culling;
-  const auto candidate_keyframes = static_cast<uint32_t>(culling.candidate_keyframes);
+  const ObjectLandmark& object = map.objects().At(id);
+  const auto seldom = [](std::string why) {
+    return Objection{ObjectRejection::kSeldomSeen, std::move(why)};
+  };
+  if (object.observations.empty()) {
+    return seldom("no keyframe observes the object any more");
+  }
+  if (object.state == ObjectState::kCandidate &&
+      object.observations.back().keyframe.value +
+              static_cast<uint32_t>(culling.candidate_keyframes) <
+          keyframe.value) {
+    return seldom(
+        fmt::format("not mapped yet, and not seen for {} keyframes", culling.candidate_keyframes));
+  }
+  if (object.visible >= culling.min_visible &&
+      object.found < culling.min_found_ratio * object.visible) {
+    return seldom(fmt::format("found in {} of the {} keyframes that should show it", object.found,
+                              object.visible));
+  }
+  if (object.state == ObjectState::kMapped &&
+      IsContradicted(map, sensor_, keyframe, id, options_.changes, contradictions_)) {
+    return Objection{ObjectRejection::kContradicted, "later depth images show what is behind it"};
+  }
+  return std::nullopt;
+}
+
+void ObjectMapper::Cull(Map& map, KeyframeId keyframe) {
   const IslandId island = IslandOf(map, keyframe);
-  std::vector<std::pair<ObjectId, std::string>> culled;
+  std::vector<std::pair<ObjectId, Objection>> culled;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (IslandOf(map, object) != island) {
       return;  // the camera cannot see it
     }
-    if (object.observations.empty()) {
-      culled.emplace_back(id, "no keyframe observes the object any more");
-    } else if (object.state == ObjectState::kCandidate &&
-               object.observations.back().keyframe.value + candidate_keyframes < keyframe.value) {
-      culled.emplace_back(id, fmt::format("not mapped yet, and not seen for {} keyframes",
-                                          culling.candidate_keyframes));
-    } else if (object.visible >= culling.min_visible &&
-               object.found < culling.min_found_ratio * object.visible) {
-      culled.emplace_back(id, fmt::format("found in {} of the {} keyframes that should show it",
-                                          object.found, object.visible));
+    if (const auto reason = ReasonToCull(map, keyframe, id)) {
+      culled.emplace_back(id, *reason);
     }
   });
-  for (const auto& [id, why] : culled) {
-    spdlog::debug("object {}: {}: {}", id.value, ToString(ObjectRejection::kSeldomSeen), why);
-    ++rejections_[ObjectRejection::kSeldomSeen];
+  for (const auto& [id, objection] : culled) {
+    spdlog::debug("object {}: {}: {}", id.value, ToString(objection.reason), objection.detail);
+    ++rejections_[objection.reason];
+    contradictions_.Forget(id);
     map.EraseObject(id);
   }
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
+#include "map/contradictions.h"
 #include "objects/rejection.h"
 #include "objects/validity.h"
 
@@ -55,7 +57,8 @@ class ObjectMapper {
   Objection FewViews(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map, KeyframeId keyframe);
   std::vector<ObjectId> TakeChanged(const Map& map, KeyframeId keyframe);
-  void CullSeldomSeen(Map& map, KeyframeId keyframe);
+  std::optional<Objection> ReasonToCull(const Map& map, KeyframeId keyframe, ObjectId id);
+  void Cull(Map& map, KeyframeId keyframe);
   void Reject(Map& map, ObjectId id, const Objection& objection);
 
   const Sensor& sensor_;
@@ -63,6 +66,7 @@ class ObjectMapper {
   std::map<ObjectRejection, size_t> rejections_;
   // The objects that may have changed since the last search for duplicates, in any order.
   std::vector<ObjectId> changed_;
+  Contradictions<ObjectId> contradictions_;
   bool may_all_have_changed_ = true;
 };
 

@@ -20,9 +20,10 @@ enum class ObjectRejection {
   kElongated,       // long or flat along the view, which needs more parallax
   kPart,            // it is a part of a mapped object
   kSeldomSeen,      // culled, because few of the keyframes that should see it do
+  kContradicted,    // later depth images show what is behind it
   kFused,           // it was the same as another object
 };
-inline constexpr int kObjectRejectionCount = 14;
+inline constexpr int kObjectRejectionCount = 15;
 
 // As in summary.json: "few_views".
 std::string ToString(ObjectRejection reason);

@@ -117,6 +117,7 @@ Json ToJson(const MapSummary& summary) {
   return {{"keyframes", summary.keyframes},
           {"landmarks", summary.landmarks},
           {"landmarks_at_infinity", summary.landmarks_at_infinity},
+          {"contradicted_landmarks", summary.contradicted_landmarks},
           {"loops", summary.loops},
           {"sessions", summary.sessions},
           {"reprojection_px", OrNull(summary.reprojection_px)},

@@ -91,6 +91,8 @@ struct MapSummary {
   size_t keyframes = 0;
   size_t landmarks = 0;
   size_t landmarks_at_infinity = 0;  // those whose distance is not known (located_landmarks.h)
+  // Landmarks of the run that were removed because later depth images show that nothing is there.
+  size_t contradicted_landmarks = 0;
   size_t loops = 0;
   size_t sessions = 0;  // runs that added keyframes
   // Median of the distances between keypoints and projected landmarks. Absent without a map.

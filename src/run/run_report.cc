@@ -105,6 +105,22 @@ void PrintUnsure(std::span<const UnsureStretch> unsure) {
       longest->last_frame);
 }
 
+void PrintMap(const MapSummary& map) {
+  Print("{}, {}{}{}\n", Counted(map.keyframes, "keyframe"), Counted(map.landmarks, "landmark"),
+        map.landmarks_at_infinity > 0
+            ? fmt::format(" ({} of them as good as infinitely far away)", map.landmarks_at_infinity)
+            : "",
+        map.reprojection_px
+            ? fmt::format(", reprojection error {:.3f} px (median)", *map.reprojection_px)
+            : "");
+  if (map.contradicted_landmarks > 0) {
+    Print(
+        "{} removed because later depth images show that nothing is there; if there are many, "
+        "something without a mask has moved\n",
+        Counted(map.contradicted_landmarks, "landmark"));
+  }
+}
+
 }  // namespace
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
@@ -134,15 +150,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{}, {}{}{}\n", Counted(summary.map.keyframes, "keyframe"),
-        Counted(summary.map.landmarks, "landmark"),
-        summary.map.landmarks_at_infinity > 0
-            ? fmt::format(" ({} of them as good as infinitely far away)",
-                          summary.map.landmarks_at_infinity)
-            : "",
-        summary.map.reprojection_px
-            ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
-            : "");
+  PrintMap(summary.map);
   if (summary.map.known_sizes) {
     Print("{}\n", *summary.map.known_sizes > 0
                       ? fmt::format("the unit of length is the metre (objects of known size: {})",

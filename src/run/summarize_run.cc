@@ -179,6 +179,7 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
   if (const auto map = system.map()) {
     summary.map.keyframes = map->keyframes().size();
     summary.map.landmarks = map->landmarks().size();
+    summary.map.contradicted_landmarks = system.contradicted_landmarks();
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
     summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);

@@ -187,6 +187,7 @@ StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& sele
                         .right_from_left = Inverse(right.body_from_cam) * left.body_from_cam},
       root.string());
   StereoSequence sequence{.images = {}, .calibration = left.calibration};
+  sequence.images.dataset = "euroc_stereo";
   sequence.calibration.camera = rectifier->camera();
   sequence.images.frames =
       PairImages(root, left.calibration.frames_per_second, sequence.images.warnings);

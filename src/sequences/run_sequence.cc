@@ -11,9 +11,11 @@
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
+#include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
+#include "settings/stereo_settings.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -45,6 +47,21 @@ ImageSequence OpenIcl(const Reopening& opening) {
 
 ImageSequence OpenEuroc(const Reopening& opening) { return OpenEurocSequence(opening.path).images; }
 
+ImageSequence OpenEurocStereo(const Reopening& opening) {
+  return OpenEurocPairs(opening.path).images;
+}
+
+ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
+
+ImageSequence OpenPairs(const Reopening& opening) {
+  const std::string calibration = opening.Choice("calibration");
+  StereoFolderOptions options;
+  if (!calibration.empty()) {
+    options.rectifier = MakeRectifier(calibration, ReadSettings(calibration).camera);
+  }
+  return OpenStereoFolder(opening.path, options);
+}
+
 ImageSequence OpenBag(const Reopening& opening) {
   const std::string units = opening.Choice("float_units");
   return OpenBagSequence(opening.path,
@@ -71,9 +88,12 @@ struct NamedDataset {
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 6> kDatasets = {{{"tum", OpenTum},
+constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
                                                     {"icl", OpenIcl},
                                                     {"euroc", OpenEuroc},
+                                                    {"euroc_stereo", OpenEurocStereo},
+                                                    {"kitti", OpenKitti},
+                                                    {"stereo_folder", OpenPairs},
                                                     {"bag", OpenBag},
                                                     {"video", OpenVideo},
                                                     {"vslamlab", OpenVslamlab}}};

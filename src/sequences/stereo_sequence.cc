@@ -171,6 +171,7 @@ std::vector<FramePaths> PairByName(const fs::path& left_folder, const fs::path& 
 StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& selection) {
   const auto [left, right] = FindKittiFolders(folder);
   StereoSequence sequence;
+  sequence.images.dataset = "kitti";
   sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left, "P" + right);
   sequence.images.frames = ListKittiPairs(folder, folder / ("image_" + left),
                                           folder / ("image_" + right), sequence.images.warnings);
@@ -201,9 +202,11 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
                                .selection = options.selection})
             .images;
     SplitHalves(options.rectifier, halves);
+    halves.dataset = "stereo_folder";
     return halves;
   }
   ImageSequence sequence;
+  sequence.dataset = "stereo_folder";
   sequence.frames = PairByName(left, path / "right", options.frames_per_second);
   if (fs::is_regular_file(path / "groundtruth.txt", error)) {
     sequence.groundtruth = path / "groundtruth.txt";

@@ -20,11 +20,13 @@ struct KnownPoseMapper::State {
       : sensor(MakeSensor(options)),
         detector(options.camera, options.depth, options.objects.detection,
                  SplitNames(options.tracking.dynamic_classes)),
-        mapper(sensor, options.objects) {}
+        mapper(sensor, options.objects),
+        units_per_metre(options.depth.units_per_metre) {}
 
   Sensor sensor;
   FrameDetector detector;
   ObjectMapper mapper;
+  double units_per_metre;  // of depth images
   Map map;
   DetectionCounts masks;
 };
@@ -50,6 +52,7 @@ void KnownPoseMapper::AddView(double timestamp, const Rigid3& world_from_cam,
   built.frame->id = FrameId(state.map.keyframes().NextId().value);
   built.frame->timestamp = timestamp;
   built.masks.frames_with_masks = masks.empty() ? 0 : 1;
+  built.frame->depth = DepthGrid(depth, state.units_per_metre);
   state.detector.AddDetections(masks, depth, {}, runner, built);
   state.masks.Add(built.masks);
   const KeyframeId added = state.map.AddKeyframe(std::move(built.frame), Inverse(world_from_cam));

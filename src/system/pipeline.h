@@ -49,6 +49,8 @@ class Pipeline {
   virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;
   // See Mapper::object_changes. To be called after Finish.
   virtual const std::vector<ChangedObject>& object_changes() const = 0;
+  // See Mapper::contradicted_landmarks. To be called after Finish.
+  virtual size_t contradicted_landmarks() const = 0;
   // See Mapper::left_islands. To be called after Finish, which fills it in.
   virtual const std::vector<std::shared_ptr<const Map>>& left_islands() const = 0;
 };

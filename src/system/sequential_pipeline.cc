@@ -76,6 +76,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     return mapper_.object_changes();
   }
 
+  size_t contradicted_landmarks() const override { return mapper_.contradicted_landmarks(); }
+
   const std::vector<std::shared_ptr<const Map>>& left_islands() const override {
     return mapper_.left_islands();
   }

@@ -266,6 +266,8 @@ const std::vector<ChangedObject>& System::object_changes() const {
   return pipeline_->object_changes();
 }
 
+size_t System::contradicted_landmarks() const { return pipeline_->contradicted_landmarks(); }
+
 size_t System::sized_objects() const {
   const std::shared_ptr<const Map> newest = map();
   return newest != nullptr ? MeasureScale(*newest, sensor_, options_.objects.sizes).objects : 0;

@@ -114,6 +114,8 @@ class ThreadedPipeline final : public Pipeline {
     return mapper_.object_changes();  // only Finish writes it
   }
 
+  size_t contradicted_landmarks() const override { return mapper_.contradicted_landmarks(); }
+
   const std::vector<std::shared_ptr<const Map>>& left_islands() const override {
     return mapper_.left_islands();  // only Finish writes it
   }

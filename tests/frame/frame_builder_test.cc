@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -245,6 +246,16 @@ TEST_F(FrameBuilderTest, WithoutObjectsThereAreNoDetectionsButDynamicThingsStill
   EXPECT_TRUE(KeypointsInside(*built.frame, 200.0, 60.0, 80.0).empty());
   EXPECT_EQ(built.masks.detections, 0u);
   EXPECT_EQ(built.masks.frames_with_masks, 1u);
+}
+
+TEST_F(FrameBuilderTest, FramesKeepAGridOfTheirDepthWithAndWithoutObjects) {
+  const ImageInput image = MakeImage();
+  const DepthGrid expected(image.depth, 5000.0);
+  for (const auto& detection :
+       {std::optional(DetectionOptions()), std::optional<DetectionOptions>()}) {
+    FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), detection);
+    EXPECT_EQ(builder.Build(image, runner_).frame->depth.samples(), expected.samples());
+  }
 }
 
 TEST_F(FrameBuilderTest, CountsAreOfTheFrame) {

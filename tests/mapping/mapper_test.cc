@@ -7,6 +7,7 @@
 #include <ios>
 #include <map>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -134,6 +135,39 @@ TEST_F(MapperTest, BuildsAConsistentMapNearTheTruth) {
     EXPECT_LT(error.translation.norm(), 0.02);
     EXPECT_LT(AngularDistance(error.rotation, Eigen::Quaterniond::Identity()), 0.01);
   });
+}
+
+// Points from number `left` on vanish, and depth images show a wall behind all that is there.
+TEST_F(MapperTest, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
+  for (uint32_t index = 0; index <= 20; index += 5) {
+    ProcessFrame(index);
+  }
+  constexpr uint32_t kLeft = 200;
+  const auto gone_points = [&] {
+    return std::count_if(landmark_of_point_.begin(), landmark_of_point_.end(),
+                         [](const auto& entry) { return entry.first >= kLeft; });
+  };
+  const auto before = gone_points();
+  ASSERT_GT(before, 100);
+  const SyntheticWorld emptied({.points = kLeft, .pixel_noise = 0.1});
+  const cv::Mat wall(480, 640, CV_16UC1, cv::Scalar(30000));
+  for (uint32_t index = 25; index <= 40; index += 5) {
+    const SyntheticView view = emptied.Observe(index);
+    auto frame = std::make_shared<Frame>(*view.frame);
+    frame->depth = DepthGrid(wall, 1000.0);
+    KeyframeRequest request = Request(index, *mapper_->NewestKeyframe());
+    request.frame = std::move(frame);
+    request.landmarks.clear();
+    for (const uint32_t point : view.points) {
+      const auto known = landmark_of_point_.find(point);
+      request.landmarks.push_back(known != landmark_of_point_.end() ? known->second : LandmarkId());
+    }
+    Process(request);
+  }
+  EXPECT_LT(gone_points(), 0.2 * static_cast<double>(before)) << "of " << before;
+  EXPECT_GT(static_cast<double>(mapper_->contradicted_landmarks()),
+            0.7 * static_cast<double>(before));
+  EXPECT_GT(landmark_of_point_.size(), 100U) << "what is still there stays";
 }
 
 TEST_F(MapperTest, BundleAdjustmentCorrectsAWrongPose) {

@@ -101,8 +101,9 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
             (std::vector<std::string>{"median", "mean", "p95", "max"}));
   EXPECT_EQ(Keys(json["memory"]), (std::vector<std::string>{"peak_mb"}));
   EXPECT_EQ(Keys(json["map"]),
-            (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity", "loops",
-                                      "sessions", "reprojection_px", "known_sizes"}));
+            (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity",
+                                      "contradicted_landmarks", "loops", "sessions",
+                                      "reprojection_px", "known_sizes"}));
   EXPECT_EQ(
       Keys(json["provenance"]),
       (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
@@ -159,6 +160,7 @@ TEST(Summary, ValuesAreWritten) {
   summary.timing.stages_ms = SummarizeStages(times);
   summary.map.landmarks = 1234;
   summary.map.landmarks_at_infinity = 12;
+  summary.map.contradicted_landmarks = 34;
   summary.provenance.seed = 18446744073709551615U;
   summary.provenance.sequence = "fr1 \"xyz\" \xff";
   const Json json = Json::parse(FormatSummary(summary));
@@ -172,6 +174,7 @@ TEST(Summary, ValuesAreWritten) {
   EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["max"], 4.0);
   EXPECT_EQ(json["map"]["landmarks"], 1234);
   EXPECT_EQ(json["map"]["landmarks_at_infinity"], 12);
+  EXPECT_EQ(json["map"]["contradicted_landmarks"], 34);
   EXPECT_EQ(json["provenance"]["seed"], 18446744073709551615U);
   EXPECT_TRUE(json["provenance"]["sequence"].get<std::string>().starts_with("fr1 \"xyz\" "));
 }

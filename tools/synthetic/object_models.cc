@@ -73,7 +73,7 @@ SceneObject ObjectBuilder::Build(const Vector3d& base, double yaw) const {
   const Eigen::AlignedBox3d box = TightBox(parts_);
   SceneObject object;
   object.class_name = class_name_;
-  object.class_id = CocoClassId(class_name_);
+  object.class_id = class_name_.empty() ? SceneObject::kNoClass : CocoClassId(class_name_);
   object.shape = shape_;
   object.parts = parts_;
   for (Part& part : object.parts) {

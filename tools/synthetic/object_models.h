@@ -18,6 +18,7 @@ int CocoClassId(std::string_view class_name);
 // centre.
 class ObjectBuilder {
  public:
+  // An empty name: a thing without a class.
   ObjectBuilder(std::string class_name, std::string shape);
 
   ObjectBuilder& Add(const Shape& shape, const Material& material,

@@ -32,11 +32,12 @@ struct Part {
 // What a rearrangement did with an object.
 enum class ObjectStatus { kUnchanged, kMoved, kNew };
 
-// An object that a segmentation network would find.
+// An object that a segmentation network would find, or a thing without a class, which gets no mask.
 struct SceneObject {
+  static constexpr int kNoClass = -1;
   int id = 0;              // the same before and after a rearrangement
-  std::string class_name;  // name of COCO
-  int class_id = 0;        // id of COCO, counted from 0
+  std::string class_name;  // name of COCO; empty without a class
+  int class_id = 0;        // id of COCO, counted from 0, or kNoClass
   std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
   std::vector<Part> parts;
   Eigen::Vector3d half_extents =
@@ -47,6 +48,7 @@ struct SceneObject {
   ObjectStatus status = ObjectStatus::kUnchanged;
   Rigid3 former_world_from_object;  // only of a moved object: pose before the rearrangement
 
+  bool HasClass() const { return class_id != kNoClass; }
   bool IsDynamic() const { return static_cast<bool>(motion); }
   Rigid3 WorldFromObject(double time) const { return motion ? motion(time) : world_from_object; }
 };

@@ -13,6 +13,7 @@
 #include "synthetic/camera_path.h"
 #include "synthetic/catalogue.h"
 #include "synthetic/house.h"
+#include "synthetic/pushed_board.h"
 #include "synthetic/rearrangement.h"
 #include "synthetic/room.h"
 #include "synthetic/scene_builder.h"
@@ -25,7 +26,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::array<std::pair<std::string_view, SceneKind>, 9> kSceneNames = {
+constexpr std::array<std::pair<std::string_view, SceneKind>, 10> kSceneNames = {
     {{"desk", SceneKind::kDesk},
      {"room", SceneKind::kRoom},
      {"lowtexture", SceneKind::kLowTexture},
@@ -34,7 +35,8 @@ constexpr std::array<std::pair<std::string_view, SceneKind>, 9> kSceneNames = {
      {"twins", SceneKind::kTwins},
      {"rotation", SceneKind::kRotation},
      {"wall", SceneKind::kWall},
-     {"turns", SceneKind::kTurns}}};
+     {"turns", SceneKind::kTurns},
+     {"pushed", SceneKind::kPushed}}};
 constexpr double kTableHeight = 0.75;
 constexpr int kHouseFrames = 1800;
 constexpr int kTwinsFrames = 930;
@@ -149,13 +151,16 @@ PacedPath FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
   return {path, seconds};
 }
 
+void FurnishDeskRoom(SceneBuilder& builder, const Palette& palette) {
+  FurnishDesk(builder, palette, {.half_x = 2.9, .half_y = 2.6, .height = 2.6});
+  builder.AddPosters(palette);
+  builder.AddShelf(Wall::kBack, -1.1, palette);
+}
+
 Scene BuildDesk(uint64_t seed, uint64_t visit) {
   SceneBuilder builder(HashSeed(seed, 0, "desk"));
   const Palette palette = builder.AddRichPalette();
-  const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
-  FurnishDesk(builder, palette, room);
-  builder.AddPosters(palette);
-  builder.AddShelf(Wall::kBack, -1.1, palette);
+  FurnishDeskRoom(builder, palette);
   builder.scene().world_from_cam = ByHand(DeskPath(), visit);
   return builder.Finish();
 }
@@ -264,6 +269,26 @@ Scene BuildTurns(uint64_t seed) {
   return scene;
 }
 
+// The scene of the desk, over which somebody pushes a board. The hand that holds the camera moves
+// in another way than in the desk of the same seed, so the two are two visits of one room.
+Scene BuildPushed(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "desk"));
+  const Palette palette = builder.AddRichPalette();
+  FurnishDeskRoom(builder, palette);
+  SceneObject board = MakePushedBoard(builder.Fit(palette.pages.front(), {0.125, 0.004, 0.1}),
+                                      builder.Repeat(palette.speckle, 0.3, {0.7F, 0.85F, 1.1F}))
+                          .Build(Vector3d::Zero(), 0.0);
+  PushedPath path;
+  for (const double x : {-0.45, -0.2, 0.05, 0.3, 0.5}) {
+    path.places.push_back(OnTable(x, -0.25) + Vector3d(0.0, 0.0, 0.15 + board.half_extents.z()));
+  }
+  board.motion = [path](double time) { return path.WorldFromThing(time); };
+  board.world_from_object = board.motion(0.0);
+  builder.AddObject(std::move(board));
+  builder.scene().world_from_cam = ByHand(DeskPath(), HashSeed(seed, 0, "pushed"));
+  return builder.Finish();
+}
+
 // A wall with posters, seen head on from so near that nothing else is in the image.
 Scene BuildWall(uint64_t seed) {
   SceneBuilder builder(HashSeed(seed, 0, "wall"));
@@ -310,6 +335,8 @@ Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
       return BuildWall(seed);
     case SceneKind::kTurns:
       return BuildTurns(seed);
+    case SceneKind::kPushed:
+      return BuildPushed(seed);
   }
   throw InputError("unknown scene");
 }

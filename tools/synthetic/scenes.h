@@ -18,7 +18,8 @@ enum class SceneKind {
   kTwins,
   kRotation,
   kWall,
-  kTurns
+  kTurns,
+  kPushed
 };
 
 // The kind with a name such as "desk" or "lowtexture". Throws InputError for an unknown name.

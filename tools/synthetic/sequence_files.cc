@@ -157,7 +157,7 @@ std::string ObjectsJson(const SequencePlan& plan) {
           {{"timestamp", plan.layout.Stamp(frame)},
            {"world_from_object", PoseJson(object.WorldFromObject(FrameTime(frame)))}});
     }
-    file["objects"].push_back(std::move(entry));
+    file[object.HasClass() ? "objects" : "unclassed"].push_back(std::move(entry));
   }
   if (plan.rearranged) {
     file["gone"] = nlohmann::ordered_json::array();

@@ -31,7 +31,11 @@ constexpr int kMinMaskArea = 100;  // px
 std::string MaskText(const Scene& scene, const cv::Mat& instance) {
   std::string text;
   for (const InstanceOutline& outline : FindOutlines(instance, kMinMaskArea)) {
-    text += std::to_string(scene.objects[static_cast<size_t>(outline.object)].class_id);
+    const SceneObject& object = scene.objects[static_cast<size_t>(outline.object)];
+    if (!object.HasClass()) {
+      continue;
+    }
+    text += std::to_string(object.class_id);
     for (const Eigen::Vector2d& vertex : outline.vertices) {
       fmt::format_to(std::back_inserter(text), " {:.6f} {:.6f}",
                      std::clamp(vertex.x() / instance.cols, 0.0, 1.0),

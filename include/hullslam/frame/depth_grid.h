@@ -9,7 +9,7 @@
 namespace hullslam {
 
 // The depth image at every kStep-th pixel of every kStep-th row. Keyframes keep it, so that later
-// steps can find out whether something hid an object.
+// steps can find out whether something hid an object, and whether a landmark is still there.
 class DepthGrid {
  public:
   static constexpr int kStep = 8;  // px

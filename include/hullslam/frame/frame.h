@@ -19,7 +19,7 @@ struct Frame {
   FrameFeatures features;
   std::vector<WordId> words;  // one per keypoint; empty without a vocabulary
   std::vector<Detection> detections;
-  DepthGrid depth;  // empty without depth, and before the first masks
+  DepthGrid depth;  // empty without depth
 };
 
 }  // namespace hullslam

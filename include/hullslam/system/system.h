@@ -146,6 +146,9 @@ class System {
   // The changes of the objects of the map that the system began with, and the new objects
   // (docs/maps.md). Empty before Finish, and if no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const;
+  // The number of landmarks that were removed because later depth images show that nothing is there
+  // any more. To be called after Finish.
+  size_t contradicted_landmarks() const;
   // The islands that were not joined to the map, in the order in which they were begun. Empty
   // before Finish.
   const std::vector<LeftIsland>& left_islands() const { return left_islands_; }

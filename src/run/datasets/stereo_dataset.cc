@@ -112,6 +112,7 @@ class StereoFolder final : public Dataset {
                              .selection = arguments.selection});
     if (rectifier != nullptr) {
       settings.options.camera = rectifier->camera();
+      sequence.choices["calibration"] = std::filesystem::absolute(file).string();
     }
     return Finish(arguments, std::move(settings), std::move(sequence),
                   Describe(GivenSettings(file)));

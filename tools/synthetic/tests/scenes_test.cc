@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 constexpr SceneKind kAll[] = {SceneKind::kDesk,     SceneKind::kRoom,  SceneKind::kLowTexture,
                               SceneKind::kDynamic,  SceneKind::kHouse, SceneKind::kTwins,
-                              SceneKind::kRotation, SceneKind::kWall,  SceneKind::kTurns};
+                              SceneKind::kRotation, SceneKind::kWall,  SceneKind::kTurns,
+                              SceneKind::kPushed};
 
 TEST(SceneKind, NamesAreParsedAndPrinted) {
   for (const SceneKind kind : kAll) {
@@ -139,6 +140,28 @@ TEST(Scenes, AnotherSeedChangesTexturesAndKeepsObjects) {
   const cv::Mat seen_a = Renderer(a, SmallCamera()).Render(0.0).colour;
   const cv::Mat seen_b = Renderer(b, SmallCamera()).Render(0.0).colour;
   EXPECT_GT(cv::norm(seen_a, seen_b, cv::NORM_L1) / static_cast<double>(seen_a.total()), 5.0);
+}
+
+TEST(Scenes, PushedIsTheDeskWithAThingThatRestsAtFivePlacesInView) {
+  const Scene desk = BuildScene(SceneKind::kDesk, 300, 1);
+  const Scene scene = BuildScene(SceneKind::kPushed, 300, 1);
+  ASSERT_EQ(scene.objects.size(), desk.objects.size() + 1);
+  for (size_t i = 0; i < desk.objects.size(); ++i) {
+    EXPECT_EQ(scene.objects[i].world_from_object.translation,
+              desk.objects[i].world_from_object.translation);
+  }
+  EXPECT_GT((scene.world_from_cam(0.0).translation - desk.world_from_cam(0.0).translation).norm(),
+            1e-3);
+  const SceneObject& board = scene.objects.back();
+  EXPECT_FALSE(board.HasClass());
+  const Renderer renderer(scene, SmallCamera());
+  for (int place = 0; place < 5; ++place) {
+    const double time = 2.1 * place + 0.7;
+    EXPECT_EQ(board.WorldFromObject(time).translation,
+              board.WorldFromObject(time + 0.5).translation);
+    const cv::Mat mask = renderer.Render(time).instance == board.id;
+    EXPECT_GT(cv::countNonZero(mask), 0.01 * static_cast<double>(mask.total())) << time;
+  }
 }
 
 TEST(Scenes, InDynamicThePersonOftenCoversMuchOfTheView) {

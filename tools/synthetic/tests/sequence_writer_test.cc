@@ -112,6 +112,18 @@ TEST_F(SequenceWriterTest, GroundTruthIsThePathOfTheCamera) {
   }
 }
 
+TEST_F(SequenceWriterTest, AThingWithoutAClassHasNoMaskAndItsOwnList) {
+  const fs::path folder = Write("out", {.scene = SceneKind::kPushed, .frames = 2});
+  const auto truth = nlohmann::json::parse(Read(folder / "groundtruth_objects.json"));
+  ASSERT_EQ(truth["unclassed"].size(), 1U);
+  EXPECT_EQ(truth["unclassed"][0]["class"], "");
+  EXPECT_EQ(truth["unclassed"][0]["poses"].size(), 2U);
+  std::ifstream file(folder / "masks/1000.000000.txt");
+  for (std::string line; std::getline(file, line);) {
+    EXPECT_FALSE(line.starts_with("-1")) << line;
+  }
+}
+
 TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
   const fs::path folder = Write("out", {.scene = SceneKind::kDynamic, .frames = 2});
   const auto truth = nlohmann::json::parse(Read(folder / "groundtruth_objects.json"));
