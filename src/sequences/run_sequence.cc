@@ -55,7 +55,11 @@ ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(openin
 
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");
+  const std::string rate = opening.Choice("frames_per_second");
   StereoFolderOptions options;
+  if (!rate.empty()) {
+    options.frames_per_second = std::strtod(rate.c_str(), nullptr);
+  }
   if (!calibration.empty()) {
     options.rectifier = MakeRectifier(calibration, ReadSettings(calibration).camera);
   }

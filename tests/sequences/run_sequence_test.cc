@@ -37,6 +37,19 @@ TEST(RunSequence, IsOpenedAsTheRunReadIt) {
       {"tum"});
 }
 
+TEST(RunSequence, PairsAreOpenedWithTheRateOfTheRun) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"left/0.png", "right/0.png", "left/1.png", "right/1.png"}) {
+    folder.Write(name, "");
+  }
+  const ImageSequence sequence = OpenRunSequence(
+      {.path = {}, .dataset = "stereo_folder", .choices = {{"frames_per_second", "4"}}},
+      folder.path(), MadeCamera());
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 0.25);
+  EXPECT_EQ(sequence.frames[1].right.filename(), "1.png");
+}
+
 TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
   const TemporaryFolder folder;
   folder.Write("tum/rgb.txt", "1.5 a.png\n2.5 b.png\n");

@@ -110,6 +110,7 @@ class StereoFolder final : public Dataset {
         arguments.sequence, {.rectifier = rectifier,
                              .frames_per_second = settings.options.frames_per_second,
                              .selection = arguments.selection});
+    sequence.choices["frames_per_second"] = fmt::format("{}", settings.options.frames_per_second);
     if (rectifier != nullptr) {
       settings.options.camera = rectifier->camera();
       sequence.choices["calibration"] = std::filesystem::absolute(file).string();
