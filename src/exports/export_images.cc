@@ -9,12 +9,12 @@
 #include <optional>
 #include <utility>
 
-#include "exports/point_colours.h"
 #include "frame/dynamic_mask.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
 #include "sequences/frame_colour.h"
 #include "sequences/image_file.h"
+#include "view/point_colours.h"
 
 namespace hullslam {
 namespace {

@@ -9,11 +9,12 @@
 #include "bags/ros2_schemas.h"
 #include "exports/mcap_messages.h"
 #include "hullslam/util/error.h"
+#include "map/located_landmarks.h"
 #include "sequences/frame_colour.h"
 #include "sequences/image_file.h"
 #include "system/make_sensor.h"
+#include "view/point_colours.h"
 #include "view/run_pictures.h"
-#include "view/view_of_map.h"
 
 namespace hullslam {
 namespace {
@@ -57,11 +58,14 @@ class RunRecorder {
   // The landmarks, with colours of the images.
   std::string Points(RosTime time) const {
     const Sensor sensor = MakeSensor(*run_.options);
-    ViewModel model;
-    AddMap(*run_.map, sensor, run_.options->objects, model);
-    RunImageTasks(*run_.sequence, sensor.camera,
-                  ColourTasks(FindLandmarkPixels(*run_.map, sensor), model));
-    return PointsMessage(time, model.landmarks.positions, model.landmarks.colours);
+    const LocatedLandmarks located = LocateLandmarks(*run_.map, sensor);
+    PointColours colours(*run_.map, located.ids);
+    RunImageTasks(*run_.sequence, sensor.camera, ColourTasks(*run_.map, sensor.camera, colours));
+    std::vector<Eigen::Vector3f> positions;
+    for (const Eigen::Vector3d& position : located.positions) {
+      positions.push_back(position.cast<float>());
+    }
+    return PointsMessage(time, positions, colours.Colours());
   }
 
   size_t WriteFrames() {

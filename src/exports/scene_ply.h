@@ -8,8 +8,7 @@
 
 namespace hullslam {
 
-// Binary little-endian PLY files whose vertices have `float x y z, uchar red green blue`, in the
-// world frame.
+// PLY files of PlyWriter (results/ply_writer.h).
 
 // Only the points.
 std::string FormatPointsPly(std::span<const ColouredPoint> points);

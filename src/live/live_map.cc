@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <tuple>
 #include <utility>
 
 #include "eval/object_metrics.h"
@@ -16,9 +15,6 @@
 
 namespace hullslam {
 namespace {
-
-// As in the report (view/view_of_map.cc).
-constexpr int kLeastShared = 100;
 
 // Mixes the bits of an id, so that ids with the same last bits are an even choice.
 uint32_t Mix(uint32_t id) {
@@ -210,33 +206,7 @@ void LiveMap::FollowObjects(const Map& map, IslandId island, bool is_limited,
 }
 
 bool LiveMap::FollowEdges(const Map& map, IslandId island) {
-  std::vector<std::tuple<int, uint32_t, uint32_t>> covisible;
-  ViewEdges edges;
-  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    if (keyframe.island != island) {
-      return;
-    }
-    for (const Covisible& other : keyframe.covisible) {
-      if (id < other.keyframe && other.shared >= kLeastShared) {
-        covisible.emplace_back(-other.shared, id.value, other.keyframe.value);
-      }
-    }
-    for (const KeyframeId other : keyframe.loops) {
-      if (id < other) {
-        edges.loops.push_back({id.value, other.value});
-      }
-    }
-  });
-  if (covisible.size() > limits_.covisibility) {
-    std::nth_element(covisible.begin(),
-                     covisible.begin() + static_cast<ptrdiff_t>(limits_.covisibility),
-                     covisible.end());
-    covisible.resize(limits_.covisibility);
-  }
-  for (const auto& [shared, a, b] : covisible) {
-    edges.covisibility.push_back({a, b});
-  }
-  std::sort(edges.covisibility.begin(), edges.covisibility.end());
+  ViewEdges edges = FindEdges(map, limits_.covisibility, island);
   const bool is_changed = edges.covisibility != edges_.covisibility || edges.loops != edges_.loops;
   edges_ = std::move(edges);
   return is_changed;

@@ -107,7 +107,7 @@ std::string LiveMessages::Frame(const LiveFrame* frame, const LiveControls& cont
   Parts parts;
   if (frame != nullptr) {
     const TrackedFrame& tracked = frame->report.tracked;
-    LivePicture made = pictures_.Make(*frame);
+    const LivePicture made = pictures_.Make(*frame);
     live_ = {{"frame", frame->number},
              {"frames", run_.frame_count},
              {"time", tracked.timestamp - run_.start},
@@ -125,9 +125,7 @@ std::string LiveMessages::Frame(const LiveFrame* frame, const LiveControls& cont
     }
     live_["elsewhere"] = IsElsewhere(*frame);
     if (made.picture.width > 0) {
-      ViewModel model;
-      model.pictures.push_back(std::move(made.picture));
-      parts.set["live_image"] = ViewParts(model, run_.start)["images"][0];
+      parts.set["live_image"] = PictureJson(made.picture, run_.start);
       parts.set["live_image"]["matched"] = PackArray(made.matched);
       parts.set["live_image"]["unmatched"] = PackArray(made.unmatched);
       image_ = parts.set["live_image"];
@@ -155,20 +153,17 @@ std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool 
     parts.patch["keyframes"] = PatchOf(change.keyframes, std::move(columns));
   }
   if (change.were_objects_removed || !change.objects.empty()) {
-    ViewModel model;
+    Json objects = Json::array();
     for (const auto& [id, object] : map_.objects()) {
       if (change.were_objects_removed ||
           std::find(change.objects.begin(), change.objects.end(), id) != change.objects.end()) {
-        model.objects.push_back({object, {}, {}});
+        objects.push_back(ObjectJson({object, {}, {}}, run_.start));
       }
     }
-    Json& place = change.were_objects_removed ? parts.set : parts.add;
-    place["objects"] = ViewParts(model, run_.start)["objects"];
+    (change.were_objects_removed ? parts.set : parts.add)["objects"] = std::move(objects);
   }
   if (change.were_edges_changed) {
-    ViewModel model;
-    model.edges = map_.edges();
-    parts.set["edges"] = ViewParts(model, run_.start)["edges"];
+    parts.set["edges"] = EdgesJson(map_.edges());
   }
   FollowPath(state, is_at_rest, parts);
   FollowCounts(state, parts);
@@ -179,18 +174,18 @@ std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool 
 // New poses are added. After a correction of the map, all poses are new.
 void LiveMessages::FollowPath(const LiveState& state, bool is_at_rest, Parts& parts) {
   const Trajectory path = ComposeTrajectory(*state.map, state.path);
-  ViewModel model;
+  Trajectory changed;
   const bool is_longer = state.path_thinnings == path_thinnings_ &&
                          state.map->correction_count() == corrections_ &&
                          path.size() >= path_.size();
   for (const StampedPose& pose : path) {
     if (!is_longer || path_.empty() || pose.timestamp > path_.back().timestamp) {
-      model.trajectory.push_back(pose);
+      changed.push_back(pose);
     }
   }
-  if (!model.trajectory.empty()) {
+  if (!changed.empty()) {
     (is_longer && !path_.empty() ? parts.add : parts.set)["trajectory"] =
-        ViewParts(model, run_.start)["trajectory"];
+        TrajectoryJson(changed, run_.start);
   }
   path_ = path;
   path_thinnings_ = state.path_thinnings;
@@ -242,9 +237,7 @@ void LiveMessages::FollowCounts(const LiveState& state, Parts& parts) {
     parts.set["summary"] = SummaryPart();
   }
   if (is_lost_more) {
-    ViewModel model;
-    model.summary = SummaryPart();
-    parts.set["losses"] = ViewParts(model, run_.start)["losses"];
+    parts.set["losses"] = LossesJson(SummaryPart(), run_.start);
   }
 }
 

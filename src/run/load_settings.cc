@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <system_error>
 #include <utility>
 
 #include "hullslam/util/error.h"
@@ -12,6 +13,10 @@
 
 namespace hullslam {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOwn = "in the folder of the sequence";
 
 // The names of the presets for --help. Help must also work without the folder of presets.
 std::string ListPresets() {
@@ -41,6 +46,32 @@ void TakeReport(SettingsReport report, LoadedSettings& settings) {
 }
 
 }  // namespace
+
+SettingsChoice ChooseTumSettings(const fs::path& given, const fs::path& sequence) {
+  if (!given.empty()) {
+    return GivenSettings(given);
+  }
+  fs::path found = FindDefaultSettings(sequence, FindConfigFolder());
+  const bool is_own = found == sequence / "camera.yaml";
+  return {std::move(found), is_own ? kOwn : "by the name of the folder of the sequence"};
+}
+
+SettingsChoice ChooseIclSettings(const fs::path& given, const fs::path& sequence) {
+  std::error_code error;
+  if (!given.empty()) {
+    return GivenSettings(given);
+  }
+  if (fs::path own = sequence / "camera.yaml"; fs::exists(own, error)) {
+    return {std::move(own), kOwn};
+  }
+  return {FindConfigFolder() / "ICL.yaml", "the camera of ICL-NUIM"};
+}
+
+SettingsChoice GivenSettings(const fs::path& given) { return {given, "as --settings says"}; }
+
+std::string Describe(const SettingsChoice& choice) {
+  return fmt::format("settings: {} ({})", choice.file.string(), choice.reason);
+}
 
 void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings) {
   app.add_option("--settings", settings, "settings file (" + rule + ")");

@@ -5,63 +5,21 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
-#include <map>
-#include <sstream>
-#include <utility>
 
 #include "files/atomic_file.h"
-#include "hullslam/map_files/map_file.h"
-#include "hullslam/settings/settings.h"
 #include "run/messages.h"
-#include "system/make_sensor.h"
-#include "view/aligned_truth.h"
-#include "view/fit_size.h"
-#include "view/report_page.h"
-#include "view/view_of_map.h"
-#include "view/view_of_run.h"
+#include "view/report.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kReportFile = "report.html";
-
-// The settings as keys and values.
-std::map<std::string, std::string> SettingsByKey(const SystemOptions& options) {
-  std::map<std::string, std::string> settings;
-  std::istringstream lines(FormatSettings(options));
-  for (std::string line; std::getline(lines, line);) {
-    const size_t colon = line.find(": ");
-    if (colon != std::string::npos && line.front() != '%' && line.front() != '#') {
-      settings[line.substr(0, colon)] = line.substr(colon + 2);
-    }
-  }
-  return settings;
-}
-
-// The calibration differs from the default in every run, so it is left out.
-ViewSettings CompareWithDefaults(const SystemOptions& options) {
-  ViewSettings settings;
-  settings.explanation = "The calibration of the camera (Camera.*) is left out.";
-  const std::map<std::string, std::string> defaults = SettingsByKey(SystemOptions());
-  for (const auto& [key, value] : SettingsByKey(options)) {
-    const auto standard = defaults.find(key);
-    const std::string text = standard != defaults.end() ? standard->second : std::string();
-    if (!key.starts_with("Camera.") && value != text) {
-      settings.changed.push_back({key, value, text});
-    }
-  }
-  return settings;
-}
-
-// Thins the model and says what was left out.
-std::string PageOf(ViewModel model) {
-  ThinToFit(kMostReportBytes - FormatPage({}).size(), model);
-  for (const std::string& note : model.notes) {
+std::string PageOf(const Report& report) {
+  for (const std::string& note : report.notes) {
     PrintError("report: {}\n", note);
   }
-  return FormatReport(model);
+  return report.page;
 }
 
 }  // namespace
@@ -75,14 +33,8 @@ void AddReportFlag(CLI::App& app, bool& report) {
 std::string WriteReport(const fs::path& folder, const Map& map, const SystemOptions& options,
                         const ImageSequence& sequence, bool is_quiet) {
   try {
-    const Sensor sensor = MakeSensor(options);
-    const ViewSettings settings = CompareWithDefaults(options);
-    const fs::path file = folder / kReportFile;
-    WriteFileAtomically(file, PageOf(ViewOfRun(folder, {.map = &map,
-                                                        .sensor = &sensor,
-                                                        .options = &options.objects,
-                                                        .sequence = &sequence,
-                                                        .settings = &settings})));
+    const fs::path file = folder / "report.html";
+    WriteFileAtomically(file, PageOf(MakeReport(folder, map, options, sequence)));
     if (!is_quiet) {
       Print("the report is in {}\n", file.string());
     }
@@ -93,16 +45,10 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
   return {};
 }
 
-std::string ReportOfRun(const fs::path& folder) { return PageOf(ViewOfRun(folder)); }
+std::string ReportOfRun(const fs::path& folder) { return PageOf(MakeReport(folder)); }
 
 std::string ReportOfMap(const fs::path& map) {
-  const StoredMap stored = ReadMap(map);
-  const SystemOptions options = OptionsOf(stored.settings);
-  ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
-  AddUp(std::nullopt, model);
-  model.title = map.filename().string();
-  model.version = HULLSLAM_VERSION;
-  return PageOf(std::move(model));
+  return PageOf(MakeReportOfMap(map, HULLSLAM_VERSION));
 }
 
 }  // namespace hullslam

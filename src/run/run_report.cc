@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -11,7 +12,7 @@
 
 #include "hullslam/map/initialisation_failure.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
+#include "run/summarize_run.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -121,6 +122,30 @@ void PrintMap(const MapSummary& map) {
   }
 }
 
+std::string At(const Eigen::Vector3d& position) {
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", position.x(), position.y(), position.z());
+}
+
+std::string Describe(const ChangedObject& changed) {
+  const auto position = [](const std::optional<LocatedObject>& object) {
+    return At(object->ellipsoid.world_from_object.translation);
+  };
+  switch (changed.change) {
+    case ObjectChange::kMoved:
+      return fmt::format("  moved: {} (object {}) from {} to {}, object {} now\n", changed.label,
+                         changed.former->object.value, position(changed.former),
+                         position(changed.now), changed.now->object.value);
+    case ObjectChange::kGone:
+      return fmt::format("  gone:  {} (object {}) from {}\n", changed.label,
+                         changed.former->object.value, position(changed.former));
+    case ObjectChange::kNew:
+      return fmt::format("  new:   {} (object {}) at {}\n", changed.label,
+                         changed.now->object.value, position(changed.now));
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
@@ -201,6 +226,32 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
         found, options.max_lost_at_end);
   }
   return {};
+}
+
+std::string FormatFigure(const std::optional<double>& figure, int decimals) {
+  return figure ? fmt::format("{:.{}f}", *figure, decimals) : std::string("-");
+}
+
+std::string DescribeChanges(const std::vector<ChangedObject>& changes) {
+  const std::map<std::string, size_t> counts = CountChanges(changes);
+  std::string text = fmt::format(
+      "objects of the map: {} seen again, {} moved, {} gone, {} not in view; {} new, {} at places "
+      "that were not seen before\n",
+      counts.at("seen_again"), counts.at("moved"), counts.at("gone"), counts.at("not_seen"),
+      counts.at("new"), counts.at("first_seen"));
+  for (const ChangedObject& changed : changes) {
+    text += Describe(changed);
+  }
+  return text;
+}
+
+std::string DescribeObjects(const ObjectsSummary& summary, const char* unit) {
+  return fmt::format(
+      "{}, {} not mapped; means: SIoU {} with hulls, {} with masks, tangent distance {} px, MTD {} "
+      "{}^2 (of {})",
+      Counted(summary.count, "object"), summary.candidates, FormatFigure(summary.siou_mean, 3),
+      FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
+      FormatFigure(summary.mtd_mean_m2, 5), unit, Counted(summary.observations, "observation"));
 }
 
 }  // namespace hullslam

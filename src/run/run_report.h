@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hullslam/map/messages.h"
 #include "hullslam/system/options.h"
@@ -21,5 +23,16 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
 // lost. Empty if it does not count as failed. `frames` are the tracked and the lost frames.
 std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
                          const RunSummary& summary, std::span<const TrackedFrame> frames);
+
+// The text "objects of the map: 12 seen again, ...", and one line for each object that was moved,
+// is gone or is new.
+std::string DescribeChanges(const std::vector<ChangedObject>& changes);
+
+// The number with this many decimals; "-" if it is absent.
+std::string FormatFigure(const std::optional<double>& figure, int decimals);
+
+// "7 objects, 3 not mapped; means: SIoU 0.810 with hulls, ..." `unit` is the unit of length of the
+// map: "m", or "u" if it is unknown.
+std::string DescribeObjects(const ObjectsSummary& summary, const char* unit);
 
 }  // namespace hullslam

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "eval/object_metrics.h"
 #include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
@@ -196,6 +197,36 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
   }
   summary.islands = SummarizeIslands(system, trajectory, groundtruth, options.sensor);
+  return summary;
+}
+
+std::map<std::string, size_t> CountChanges(const std::vector<ChangedObject>& changes) {
+  std::map<std::string, size_t> counts;
+  for (const ObjectChange change : kObjectChanges) {
+    counts[std::string(ToString(change))] = static_cast<size_t>(
+        std::count_if(changes.begin(), changes.end(),
+                      [&](const ChangedObject& changed) { return changed.change == change; }));
+  }
+  return counts;
+}
+
+ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts) {
+  const MapFit fit = SummarizeFits(report);
+  ObjectsSummary summary;
+  summary.count = fit.objects;
+  summary.siou_mean = fit.mean.siou;
+  summary.siou_mask_mean = fit.mean.siou_mask;
+  summary.mtd_mean_m2 = fit.mean.mtd_m2;
+  summary.tangent_mean_px = fit.mean.tangent_px;
+  summary.observations = fit.mean.observations;
+  summary.candidates = report.candidates;
+  summary.detections = counts.detections;
+  summary.frames_with_masks = counts.frames_with_masks;
+  summary.frames_without_masks = counts.frames_without_masks;
+  summary.rejections = counts.rejections;
+  if (report.changes) {
+    summary.changes = CountChanges(*report.changes);
+  }
   return summary;
 }
 

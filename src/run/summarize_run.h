@@ -2,13 +2,17 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/mapped_vector.h"
 #include "report/lost_frames.h"
+#include "report/object_report.h"
 #include "results/summary.h"
 #include "run/load_settings.h"
 #include "run/run_arguments.h"
@@ -30,5 +34,11 @@ struct RunResult {
 RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& settings,
                         const ImageSequence& sequence, const RunResult& result,
                         const System& system, const std::optional<Trajectory>& groundtruth);
+
+// The numbers of changes by the names of ObjectChange, with a zero for each kind that did not
+// happen.
+std::map<std::string, size_t> CountChanges(const std::vector<ChangedObject>& changes);
+
+ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
 }  // namespace hullslam

@@ -2,10 +2,8 @@
 #include "view/run_pictures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -149,19 +147,6 @@ void AddCutoutTasks(ViewObject& shown, const PinholeCamera& camera, std::vector<
   }
 }
 
-// The mean colour of the 5 x 5 px around a pixel: landmarks are corners, where a single pixel is
-// often neither the one colour nor the other.
-std::array<uint8_t, 3> ColourAround(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  constexpr int kReach = 2;
-  const int x = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, image.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, image.rows - 1);
-  const cv::Rect around = cv::Rect(x - kReach, y - kReach, 2 * kReach + 1, 2 * kReach + 1) &
-                          cv::Rect(cv::Point(), image.size());
-  const cv::Scalar mean = cv::mean(image(around));
-  return {static_cast<uint8_t>(mean[2]), static_cast<uint8_t>(mean[1]),
-          static_cast<uint8_t>(mean[0])};
-}
-
 // The stamps of the pictures: those of keyframes.
 std::vector<double> PictureStamps(const ViewModel& model, size_t most) {
   std::vector<double> stamps;
@@ -203,17 +188,14 @@ LeftOutTasks RunImageTasks(const ImageSequence& sequence, const PinholeCamera& c
   return left_out;
 }
 
-std::vector<ImageTask> ColourTasks(std::span<const KeyframePixels> keyframes, ViewModel& model) {
-  constexpr std::array<uint8_t, 3> kGrey = {150, 150, 150};
-  model.landmarks.colours.assign(model.landmarks.positions.size(), kGrey);
+std::vector<ImageTask> ColourTasks(const Map& map, const PinholeCamera& camera,
+                                   PointColours& colours) {
   std::vector<ImageTask> tasks;
-  for (const KeyframePixels& keyframe : keyframes) {
-    tasks.push_back({keyframe.timestamp, [&model, keyframe](const cv::Mat& image) {
-                       for (const LandmarkPixel& seen : keyframe.pixels) {
-                         model.landmarks.colours[seen.landmark] = ColourAround(image, seen.pixel);
-                       }
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    tasks.push_back({keyframe.frame->timestamp, [id, &camera, &colours](const cv::Mat& image) {
+                       colours.Add(id, image, camera);
                      }});
-  }
+  });
   return tasks;
 }
 

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <functional>
 #include <opencv2/core/mat.hpp>
-#include <span>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "view/point_colours.h"
 #include "view/view_model.h"
-#include "view/view_of_map.h"
 
 namespace hullslam {
 
@@ -31,9 +31,10 @@ struct LeftOutTasks {
 LeftOutTasks RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
                            std::vector<ImageTask> tasks);
 
-// The tasks that give the landmarks of `model` their colours. A landmark without an image stays
-// grey. `model` must outlive the tasks.
-std::vector<ImageTask> ColourTasks(std::span<const KeyframePixels> keyframes, ViewModel& model);
+// The tasks that add the images of all keyframes to `colours`. `camera` and `colours` must outlive
+// the tasks.
+std::vector<ImageTask> ColourTasks(const Map& map, const PinholeCamera& camera,
+                                   PointColours& colours);
 
 // The tasks that add pictures of at most `most` keyframes, evenly chosen, with the outlines of the
 // objects' masks and the projected ellipsoids, and up to three cut-outs of each object: of the best

@@ -108,41 +108,9 @@ Json ShapesJson(const std::vector<ViewShape>& shapes) {
 Json PicturesJson(const std::vector<ViewPicture>& pictures, double start) {
   Json list = Json::array();
   for (const ViewPicture& picture : pictures) {
-    list.push_back({{"time", picture.timestamp - start},
-                    {"width", picture.width},
-                    {"height", picture.height},
-                    {"image", "data:image/jpeg;base64," + EncodeBase64(picture.jpeg)},
-                    {"outlines", ShapesJson(picture.outlines)},
-                    {"ellipses", ShapesJson(picture.ellipses)}});
+    list.push_back(PictureJson(picture, start));
   }
   return list;
-}
-
-Json ObjectJson(const ViewObject& shown, double start) {
-  const ReportedObject& object = shown.object;
-  const Eigen::Vector3d& centre = object.ellipsoid.world_from_object.translation;
-  const Eigen::Vector4d rotation = object.ellipsoid.world_from_object.rotation.coeffs();
-  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-  Json votes = Json::object();
-  for (const auto& [label, score] : object.votes) {
-    votes[Printable(label)] = score;
-  }
-  return {{"id", object.id.value},
-          {"class", Printable(object.label)},
-          {"state", ToString(object.state)},
-          {"reason", shown.reason},
-          {"votes", std::move(votes)},
-          {"centre", std::vector<double>(centre.begin(), centre.end())},
-          {"rotation", std::vector<double>(rotation.begin(), rotation.end())},
-          {"half_axes", std::vector<double>(axes.begin(), axes.end())},
-          {"siou", OrNull(object.fit.siou)},
-          {"siou_mask", OrNull(object.fit.siou_mask)},
-          {"tangent_px", OrNull(object.fit.tangent_px)},
-          {"misfit_px", object.misfit_px},
-          {"parallax_deg", ParallaxOf(object)},
-          {"quality", QualityOf(object)},
-          {"observations", object.views.size()},
-          {"cutouts", PicturesJson(shown.cutouts, start)}};
 }
 
 Json PackEdges(const std::vector<ViewEdges::Edge>& edges) {
@@ -171,28 +139,6 @@ Json SettingsJson(const ViewSettings& settings) {
                        {"default", Printable(setting.standard)}});
   }
   return {{"changed", std::move(changed)}, {"from", settings.explanation}};
-}
-
-// The stretches without a pose, from summary.json. Entries that are not as expected are left out.
-Json LossesJson(const Json& summary, double start) {
-  Json list = Json::array();
-  const Json losses =
-      summary.is_object() && summary.contains("trajectory") && summary["trajectory"].is_object()
-          ? summary["trajectory"].value("losses", Json::array())
-          : Json::array();
-  for (const Json& loss : losses.is_array() ? losses : Json::array()) {
-    const auto has = [&](const char* key) {
-      return loss.is_object() && loss.contains(key) && loss[key].is_number();
-    };
-    if (has("first_timestamp") && has("last_timestamp") && has("frames") &&
-        loss.contains("reason") && loss["reason"].is_string()) {
-      list.push_back({{"from", loss["first_timestamp"].get<double>() - start},
-                      {"to", loss["last_timestamp"].get<double>() - start},
-                      {"frames", loss["frames"]},
-                      {"reason", loss["reason"]}});
-    }
-  }
-  return list;
 }
 
 Json RunJson(const ViewModel& model, double start) {
@@ -231,21 +177,81 @@ void SetGeometry(const ViewModel& model, double start, Json& parts) {
                 {"time", PackTimes(StampsOf(model.keyframes.poses), start)},
                 {"pose", PackPoses(model.keyframes.poses)}};
   });
-  set_if("trajectory", !model.trajectory.empty(), [&] {
-    return Json{{"time", PackTimes(StampsOf(model.trajectory), start)},
-                {"pose", PackPoses(model.trajectory)}};
-  });
+  set_if("trajectory", !model.trajectory.empty(),
+         [&] { return TrajectoryJson(model.trajectory, start); });
   set_if("groundtruth", !model.groundtruth.empty(), [&] {
     return Json{{"time", PackTimes(StampsOf(model.groundtruth), start)},
                 {"position", PackPositions(model.groundtruth)}};
   });
-  set_if("edges", true, [&] {
-    return Json{{"covisibility", PackEdges(model.edges.covisibility)},
-                {"loop", PackEdges(model.edges.loops)}};
-  });
+  parts["edges"] = EdgesJson(model.edges);
 }
 
 }  // namespace
+
+nlohmann::json PictureJson(const ViewPicture& picture, double start) {
+  return {{"time", picture.timestamp - start},
+          {"width", picture.width},
+          {"height", picture.height},
+          {"image", "data:image/jpeg;base64," + EncodeBase64(picture.jpeg)},
+          {"outlines", ShapesJson(picture.outlines)},
+          {"ellipses", ShapesJson(picture.ellipses)}};
+}
+
+nlohmann::json ObjectJson(const ViewObject& shown, double start) {
+  const ReportedObject& object = shown.object;
+  const Eigen::Vector3d& centre = object.ellipsoid.world_from_object.translation;
+  const Eigen::Vector4d rotation = object.ellipsoid.world_from_object.rotation.coeffs();
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  Json votes = Json::object();
+  for (const auto& [label, score] : object.votes) {
+    votes[Printable(label)] = score;
+  }
+  return {{"id", object.id.value},
+          {"class", Printable(object.label)},
+          {"state", ToString(object.state)},
+          {"reason", shown.reason},
+          {"votes", std::move(votes)},
+          {"centre", std::vector<double>(centre.begin(), centre.end())},
+          {"rotation", std::vector<double>(rotation.begin(), rotation.end())},
+          {"half_axes", std::vector<double>(axes.begin(), axes.end())},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", object.misfit_px},
+          {"parallax_deg", ParallaxOf(object)},
+          {"quality", QualityOf(object)},
+          {"observations", object.views.size()},
+          {"cutouts", PicturesJson(shown.cutouts, start)}};
+}
+
+nlohmann::json TrajectoryJson(const Trajectory& poses, double start) {
+  return {{"time", PackTimes(StampsOf(poses), start)}, {"pose", PackPoses(poses)}};
+}
+
+nlohmann::json EdgesJson(const ViewEdges& edges) {
+  return {{"covisibility", PackEdges(edges.covisibility)}, {"loop", PackEdges(edges.loops)}};
+}
+
+nlohmann::json LossesJson(const Json& summary, double start) {
+  Json list = Json::array();
+  const Json losses =
+      summary.is_object() && summary.contains("trajectory") && summary["trajectory"].is_object()
+          ? summary["trajectory"].value("losses", Json::array())
+          : Json::array();
+  for (const Json& loss : losses.is_array() ? losses : Json::array()) {
+    const auto has = [&](const char* key) {
+      return loss.is_object() && loss.contains(key) && loss[key].is_number();
+    };
+    if (has("first_timestamp") && has("last_timestamp") && has("frames") &&
+        loss.contains("reason") && loss["reason"].is_string()) {
+      list.push_back({{"from", loss["first_timestamp"].get<double>() - start},
+                      {"to", loss["last_timestamp"].get<double>() - start},
+                      {"frames", loss["frames"]},
+                      {"reason", loss["reason"]}});
+    }
+  }
+  return list;
+}
 
 nlohmann::json ViewParts(const ViewModel& model, double start) {
   Json parts = {{"run", RunJson(model, start)}};

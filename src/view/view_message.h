@@ -14,6 +14,15 @@ inline constexpr int kViewVersion = 1;
 // `start`, s.
 nlohmann::json ViewParts(const ViewModel& model, double start);
 
+// Single parts, or elements of lists of parts, as ViewParts() makes them.
+nlohmann::json PictureJson(const ViewPicture& picture, double start);
+nlohmann::json ObjectJson(const ViewObject& object, double start);
+nlohmann::json TrajectoryJson(const Trajectory& poses, double start);
+nlohmann::json EdgesJson(const ViewEdges& edges);
+// The stretches without a pose, from the content of a summary.json. Entries that are not as
+// expected are left out.
+nlohmann::json LossesJson(const nlohmann::json& summary, double start);
+
 // A message as JSON in one line, in which every "<" is escaped, so that it may stand inside a
 // script element of HTML. Bytes of texts that are not UTF-8 are replaced.
 std::string DumpViewMessage(const nlohmann::json& message);

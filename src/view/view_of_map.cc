@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "eval/object_metrics.h"
 #include "map/located_landmarks.h"
@@ -15,10 +16,6 @@
 
 namespace hullslam {
 namespace {
-
-// Edges with fewer shared landmarks are not in the essential graph of ORB-SLAM2 (Mur-Artal and
-// Tardos 2017), and they would cover the picture.
-constexpr int kLeastShared = 100;
 
 void AddLandmarks(const Map& map, const LocatedLandmarks& located, ViewLandmarks& landmarks) {
   landmarks = {.positions = {}, .colours = {}, .created = {}, .total = located.positions.size()};
@@ -30,20 +27,10 @@ void AddLandmarks(const Map& map, const LocatedLandmarks& located, ViewLandmarks
 
 void AddKeyframes(const Map& map, ViewModel& model) {
   model.keyframes = {};
-  model.edges = {};
+  model.edges = FindEdges(map);
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     model.keyframes.ids.push_back(id.value);
     model.keyframes.poses.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
-    for (const Covisible& other : keyframe.covisible) {
-      if (id < other.keyframe && other.shared >= kLeastShared) {
-        model.edges.covisibility.push_back({id.value, other.keyframe.value});
-      }
-    }
-    for (const KeyframeId other : keyframe.loops) {
-      if (id < other) {
-        model.edges.loops.push_back({id.value, other.value});
-      }
-    }
   });
 }
 
@@ -61,15 +48,38 @@ std::string ReasonOf(const Map& map, const ObjectLandmark& object, const Sensor&
   return objection ? ToString(objection->reason) + ", " + objection->detail : std::string();
 }
 
-// The pixel of the keyframe that the landmark was last described by, if it still observes it.
-const Observation& ShowingObservation(const Landmark& landmark) {
-  const auto found =
-      std::find_if(landmark.observations.begin(), landmark.observations.end(),
-                   [&](const Observation& seen) { return seen.keyframe == landmark.reference; });
-  return found != landmark.observations.end() ? *found : landmark.observations.front();
-}
-
 }  // namespace
+
+ViewEdges FindEdges(const Map& map, size_t most_covisible, std::optional<IslandId> island) {
+  constexpr int kLeastShared = 100;
+  std::vector<std::tuple<int, uint32_t, uint32_t>> covisible;  // the most shared landmarks first
+  ViewEdges edges;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    if (island && keyframe.island != *island) {
+      return;
+    }
+    for (const Covisible& other : keyframe.covisible) {
+      if (id < other.keyframe && other.shared >= kLeastShared) {
+        covisible.emplace_back(-other.shared, id.value, other.keyframe.value);
+      }
+    }
+    for (const KeyframeId other : keyframe.loops) {
+      if (id < other) {
+        edges.loops.push_back({id.value, other.value});
+      }
+    }
+  });
+  if (covisible.size() > most_covisible) {
+    std::nth_element(covisible.begin(), covisible.begin() + static_cast<ptrdiff_t>(most_covisible),
+                     covisible.end());
+    covisible.resize(most_covisible);
+  }
+  for (const auto& [shared, a, b] : covisible) {
+    edges.covisibility.push_back({a, b});
+  }
+  std::sort(edges.covisibility.begin(), edges.covisibility.end());
+  return edges;
+}
 
 double CreationOf(const Map& map, const Landmark& landmark) {
   const Keyframe* keyframe = map.keyframes().Find(landmark.created_by);
@@ -104,28 +114,6 @@ ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& o
   std::sort(model.trajectory.begin(), model.trajectory.end(),
             [](const StampedPose& a, const StampedPose& b) { return a.timestamp < b.timestamp; });
   return model;
-}
-
-std::vector<KeyframePixels> FindLandmarkPixels(const Map& map, const Sensor& sensor) {
-  std::map<KeyframeId, KeyframePixels> by_keyframe;
-  const LocatedLandmarks located = LocateLandmarks(map, sensor);
-  for (size_t i = 0; i < located.ids.size(); ++i) {
-    const Observation& seen = ShowingObservation(map.landmarks().At(located.ids[i]));
-    const Frame& frame = *map.keyframes().At(seen.keyframe).frame;
-    KeyframePixels& pixels = by_keyframe[seen.keyframe];
-    pixels.timestamp = frame.timestamp;
-    const Eigen::Vector2d undistorted =
-        frame.features.keypoints[seen.keypoint].undistorted.cast<double>();
-    pixels.pixels.push_back({i, sensor.camera.Distort(undistorted)});
-  }
-  std::vector<KeyframePixels> list;
-  for (auto& [keyframe, pixels] : by_keyframe) {
-    list.push_back(std::move(pixels));
-  }
-  std::sort(list.begin(), list.end(), [](const KeyframePixels& a, const KeyframePixels& b) {
-    return a.timestamp < b.timestamp;
-  });
-  return list;
 }
 
 }  // namespace hullslam

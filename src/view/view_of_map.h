@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
@@ -19,22 +21,15 @@ void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, 
 // The model of a map without a run. Its trajectory has the poses of the keyframes.
 ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& options);
 
+// The loops, and the covisibility edges with at least 100 shared landmarks, sorted: edges with
+// fewer are not in the essential graph of ORB-SLAM2 (Mur-Artal and Tardos 2017), and they would
+// cover the picture. If there are more than `most_covisible`, those with fewest shared landmarks
+// are left out. With `island`, only the edges of keyframes of this island.
+ViewEdges FindEdges(const Map& map, size_t most_covisible = std::numeric_limits<size_t>::max(),
+                    std::optional<IslandId> island = std::nullopt);
+
 // The time stamp of the keyframe that made a landmark, or of the first one that observes it if that
 // was culled, s.
 double CreationOf(const Map& map, const Landmark& landmark);
-
-// A pixel that shows a landmark of the model.
-struct LandmarkPixel {
-  size_t landmark = 0;                              // index into ViewLandmarks::positions
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // raw px
-};
-struct KeyframePixels {
-  double timestamp = 0.0;  // of the keyframe, s
-  std::vector<LandmarkPixel> pixels;
-};
-
-// Where the landmarks that AddMap() adds are seen, each in one keyframe: in Landmark::reference, or
-// in the first one that observes it. In order of time.
-std::vector<KeyframePixels> FindLandmarkPixels(const Map& map, const Sensor& sensor);
 
 }  // namespace hullslam

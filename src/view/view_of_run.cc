@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
+#include "map/located_landmarks.h"
 #include "results/finished_run.h"
 #include "sequences/run_sequence.h"
 #include "view/aligned_truth.h"
+#include "view/point_colours.h"
 #include "view/run_pictures.h"
 #include "view/view_of_map.h"
 
@@ -40,6 +42,7 @@ void AddHead(const FinishedRun& run, ViewModel& model) {
   model.program = run.program;
   model.sequence = run.sequence.path;
   model.version = run.version;
+  model.is_metric = run.IsMetric();
   const fs::path sequence = fs::path(model.sequence).lexically_normal();
   model.title = sequence.has_filename() ? sequence.filename() : sequence.parent_path().filename();
   if (model.title.empty()) {
@@ -122,16 +125,17 @@ void CompareWithTruth(const std::optional<Trajectory>& groundtruth, AlignmentKin
 
 void AddPictures(const ImageSequence& sequence, const RunMemory& memory, ViewModel& model) {
   std::vector<ImageTask> tasks = PictureTasks(kMostPictures, model);
+  std::optional<PointColours> colours;
   if (memory.map != nullptr) {
-    const std::vector<KeyframePixels> pixels = FindLandmarkPixels(*memory.map, *memory.sensor);
-    for (ImageTask& task : ColourTasks(pixels, model)) {
+    colours.emplace(*memory.map, LocateLandmarks(*memory.map, *memory.sensor).ids);
+    for (ImageTask& task : ColourTasks(*memory.map, *model.camera, *colours)) {
       tasks.push_back(std::move(task));
     }
   }
   const size_t count = tasks.size();
   const LeftOutTasks left_out = RunImageTasks(sequence, *model.camera, std::move(tasks));
-  if (left_out.absent + left_out.unreadable == count) {
-    model.landmarks.colours.clear();
+  if (colours && left_out.absent + left_out.unreadable < count) {
+    model.landmarks.colours = colours->Colours();
   }
   if (left_out.absent > 0 && left_out.absent == count) {
     model.notes.push_back("images left out: the sequence has none of the run's keyframes");
@@ -201,7 +205,6 @@ ViewModel ViewOfRun(const fs::path& folder, const RunMemory& memory) {
   }
   std::optional<Trajectory> groundtruth;
   AddPart("ground truth", model, [&] {
-    model.is_metric = model.trajectory.empty() || run.IsMetric();
     groundtruth = FindGroundtruth(run, sequence);
     CompareWithTruth(groundtruth, run.alignment, model);
   });

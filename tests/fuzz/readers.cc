@@ -118,7 +118,7 @@ void FuzzSummary(std::string_view bytes) {
   folder.Write(bytes);
   Try([&] {
     const FinishedRun run = OpenFinishedRun(folder.path());
-    Expect(run.summary != nullptr && run.summary->is_object(), "no summary");
+    Expect(run.summary != nullptr, "no summary");
   });
 }
 

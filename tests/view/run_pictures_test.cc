@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "support/made_view.h"
+#include "support/synthetic_world.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -53,15 +55,22 @@ TEST_F(RunPicturesTest, AnImageOfAnotherSizeIsNotUsed) {
             1u);
 }
 
-TEST_F(RunPicturesTest, LandmarksGetTheColourOfTheirPixel) {
-  ViewModel model = MadeView(3);
-  const std::vector<KeyframePixels> keyframes = {{100.5, {{0, {3.0, 4.0}}}},
-                                                 {101.0, {{1, {900.0, -2.0}}}}};
-  EXPECT_EQ(Run(ColourTasks(keyframes, model)).unreadable, 0u);
-  using Colour = std::array<uint8_t, 3>;
-  EXPECT_EQ(model.landmarks.colours[0], (Colour{255, 0, 0}));
-  EXPECT_EQ(model.landmarks.colours[1], (Colour{0, 0, 255}));
-  EXPECT_EQ(model.landmarks.colours[2][0], model.landmarks.colours[2][2]);  // grey
+TEST_F(RunPicturesTest, LandmarksGetTheMeanColourOfTheImages) {
+  const SyntheticWorld world;
+  const Map map = MakeSyntheticMap(world, {0, 10}).map;
+  std::vector<LandmarkId> ids;
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark&) { ids.push_back(id); });
+  PointColours colours(map, ids);
+  const PinholeCamera camera = world.sensor().camera;
+  std::vector<ImageTask> tasks = ColourTasks(map, camera, colours);
+  ASSERT_EQ(tasks.size(), 2u);
+  const cv::Size size(camera.width, camera.height);
+  tasks[0].use(cv::Mat(size, CV_8UC3, cv::Scalar(10, 20, 30)));
+  tasks[1].use(cv::Mat(size, CV_8UC3, cv::Scalar(20, 40, 60)));
+  const std::vector<Colour> list = colours.Colours();
+  EXPECT_EQ(std::count(list.begin(), list.end(), Colour{45, 30, 15}),
+            static_cast<ptrdiff_t>(list.size()));
+  EXPECT_EQ(tasks[1].timestamp, map.keyframes().At(KeyframeId(1)).frame->timestamp);
 }
 
 TEST_F(RunPicturesTest, PicturesHaveOutlinesAndCutoutsShowTheObject) {

@@ -51,27 +51,5 @@ TEST_F(ViewOfMapTest, SaysWhyACandidateIsNotMapped) {
   EXPECT_EQ(model.objects[0].reason, "0 keyframes, expected at least 3");
 }
 
-// The world has no distortion, so the pixel is the projection of the landmark.
-TEST_F(ViewOfMapTest, LandmarksAreFoundInTheirKeyframes) {
-  const ViewModel model = ViewOfMap(made_.map, world_.sensor(), {});
-  const std::vector<KeyframePixels> keyframes = FindLandmarkPixels(made_.map, world_.sensor());
-  size_t count = 0;
-  for (const KeyframePixels& keyframe : keyframes) {
-    for (const StampedPose& pose : model.keyframes.poses) {
-      if (pose.timestamp != keyframe.timestamp) {
-        continue;
-      }
-      for (const LandmarkPixel& seen : keyframe.pixels) {
-        const Eigen::Vector3d point = model.landmarks.positions[seen.landmark].cast<double>();
-        const Eigen::Vector2d expected =
-            world_.sensor().camera.Project(Inverse(pose.world_from_cam) * point);
-        EXPECT_LT((seen.pixel - expected).norm(), 1e-2);
-        ++count;
-      }
-    }
-  }
-  EXPECT_EQ(count, model.landmarks.positions.size());
-}
-
 }  // namespace
 }  // namespace hullslam

@@ -11,7 +11,6 @@
 #include "hullslam/util/error.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
-#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {

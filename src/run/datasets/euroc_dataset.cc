@@ -5,7 +5,6 @@
 
 #include "hullslam/sequences/euroc_sequence.h"
 #include "run/load_settings.h"
-#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {

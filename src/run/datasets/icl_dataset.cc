@@ -10,7 +10,6 @@
 #include "run/command_line.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
-#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "hullslam/sequences/tum_sequence.h"
 #include "run/input_warnings.h"
-#include "run/settings_choice.h"
+#include "run/load_settings.h"
 
 namespace hullslam {
 namespace {

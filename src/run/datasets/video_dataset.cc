@@ -15,7 +15,6 @@
 #include "hullslam/util/error.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
-#include "run/settings_choice.h"
 #include "util/counted.h"
 
 namespace hullslam {

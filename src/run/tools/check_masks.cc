@@ -26,7 +26,6 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/settings_choice.h"
 #include "run/tools/commands.h"
 #include "run/tools/mask_overlay.h"
 #include "sequences/image_file.h"

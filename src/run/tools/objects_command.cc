@@ -16,7 +16,7 @@
 #include "results/json_text.h"
 #include "results/object_file.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
+#include "run/run_report.h"
 #include "run/tools/objects_truth.h"
 
 namespace hullslam {

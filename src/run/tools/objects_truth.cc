@@ -13,7 +13,7 @@
 #include "hullslam/util/error.h"
 #include "results/true_object_file.h"
 #include "run/messages.h"
-#include "run/object_outputs.h"
+#include "run/run_report.h"
 
 namespace hullslam {
 namespace {

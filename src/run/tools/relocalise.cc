@@ -30,7 +30,6 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/settings_choice.h"
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"
 #include "util/median.h"

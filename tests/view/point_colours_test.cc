@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/point_colours.h"
+#include "view/point_colours.h"
 
 #include <gtest/gtest.h>
 

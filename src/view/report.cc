@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/report.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "hullslam/map_files/map_file.h"
+#include "system/make_sensor.h"
+#include "view/aligned_truth.h"
+#include "view/fit_size.h"
+#include "view/report_page.h"
+#include "view/view_of_map.h"
+#include "view/view_of_run.h"
+
+namespace hullslam {
+namespace {
+
+// The settings as keys and values.
+std::map<std::string, std::string> SettingsByKey(SystemOptions options) {
+  std::map<std::string, std::string> settings;
+  for (const OptionTable::Entry& entry : options.Bind().Entries()) {
+    if (!entry.is_shared) {
+      settings[entry.key] = entry.value;
+    }
+  }
+  return settings;
+}
+
+// The calibration differs from the default in every run, so it is left out.
+ViewSettings CompareWithDefaults(const SystemOptions& options) {
+  ViewSettings settings;
+  settings.explanation = "The calibration of the camera (Camera.*) is left out.";
+  const std::map<std::string, std::string> defaults = SettingsByKey(SystemOptions());
+  for (const auto& [key, value] : SettingsByKey(options)) {
+    const auto found = defaults.find(key);
+    const std::string standard = found != defaults.end() ? found->second : std::string();
+    if (!key.starts_with("Camera.") && value != standard) {
+      settings.changed.push_back({key, value, standard});
+    }
+  }
+  return settings;
+}
+
+// Thins the model, so that browsers can show it.
+Report Format(ViewModel model) {
+  ThinToFit(kMostReportBytes - FormatPage({}).size(), model);
+  return {FormatReport(model), model.notes};
+}
+
+}  // namespace
+
+Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
+                  const ImageSequence& sequence) {
+  const Sensor sensor = MakeSensor(options);
+  const ViewSettings settings = CompareWithDefaults(options);
+  return Format(ViewOfRun(folder, {.map = &map,
+                                   .sensor = &sensor,
+                                   .options = &options.objects,
+                                   .sequence = &sequence,
+                                   .settings = &settings}));
+}
+
+Report MakeReport(const std::filesystem::path& folder) { return Format(ViewOfRun(folder)); }
+
+Report MakeReportOfMap(const std::filesystem::path& map, const std::string& version) {
+  const StoredMap stored = ReadMap(map);
+  const SystemOptions options = OptionsOf(stored.settings);
+  ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
+  AddUp(std::nullopt, model);
+  model.title = map.filename().string();
+  model.version = version;
+  return Format(std::move(model));
+}
+
+}  // namespace hullslam

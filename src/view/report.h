@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hullslam/map/map.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/options.h"
+
+namespace hullslam {
+
+// The report of a run or a map: a page that shows everything without a server.
+struct Report {
+  std::string page;
+  std::vector<std::string> notes;  // what was left out, and why
+};
+
+// The report of a run whose results are in the folder. The map and the sequence add what the files
+// do not have. Throws InputError if the files are not those of a run.
+Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
+                  const ImageSequence& sequence);
+// The report of a finished run, of which only the files are left.
+Report MakeReport(const std::filesystem::path& folder);
+// The report of a file of --save-map. `version` is that of the program.
+Report MakeReportOfMap(const std::filesystem::path& map, const std::string& version);
+
+}  // namespace hullslam
