@@ -12,6 +12,7 @@
 #include "map/located_landmarks.h"
 #include "sequences/frame_colour.h"
 #include "sequences/image_file.h"
+#include "sequences/jpeg_codec.h"
 #include "system/make_sensor.h"
 #include "view/point_colours.h"
 #include "view/run_pictures.h"

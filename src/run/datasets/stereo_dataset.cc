@@ -14,7 +14,6 @@
 #include "run/command_line.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
-#include "run/settings_choice.h"
 #include "settings/stereo_settings.h"
 
 namespace hullslam {
