@@ -45,6 +45,8 @@ class _Camera:
 class _ORBextractor:
     iniThFAST: int
     """FAST threshold, grey levels (an integer from 1 to 255; default 20)"""
+    keepEdges: bool
+    """monocular: keep features on straight edges, which look alike along the edge (true or false (1 or 0); default false)"""
     minThFAST: int
     """FAST threshold in regions without corners at the first threshold, grey levels (an integer from 1 to 255; default 7)"""
     nFeatures: int

@@ -9,6 +9,7 @@
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"
 #include "features/quadtree_selection.h"
+#include "features/straight_edge.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
@@ -43,6 +44,7 @@ class LevelExtractor {
       : level_(level),
         quota_(quota),
         subpixel_(options.subpixel),
+        keep_edges_(options.keep_edges),
         detector_(options.initial_fast_threshold, options.minimum_fast_threshold) {}
 
   void Extract(const ImagePyramid& pyramid);
@@ -54,6 +56,7 @@ class LevelExtractor {
   int level_;
   size_t quota_;
   bool subpixel_;
+  bool keep_edges_;
   CornerDetector detector_;
   QuadtreeSelection selection_;
   OrbBlur blur_;
@@ -67,6 +70,11 @@ void LevelExtractor::Extract(const ImagePyramid& pyramid) {
   features_.descriptors.clear();
   const cv::Mat& image = pyramid.level(level_);
   detector_.Detect(image, kPatchReach, corners_);
+  if (!keep_edges_) {
+    std::erase_if(corners_, [&](const Corner& corner) {
+      return IsStraightEdge(image, {corner.x, corner.y});
+    });
+  }
   selection_.Select(corners_, image.size(), quota_, selected_);
   if (selected_.empty()) {
     return;

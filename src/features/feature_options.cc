@@ -60,6 +60,8 @@ void FeatureOptions::Bind(OptionTable& options) {
             "FAST threshold in regions without corners at the first threshold, grey levels");
   scope.Add("subpixel", &subpixel,
             "refine the positions of features within a pixel of their level");
+  scope.Add("keepEdges", &keep_edges,
+            "monocular: keep features on straight edges, which look alike along the edge");
 }
 
 }  // namespace hullslam

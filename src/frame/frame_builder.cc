@@ -98,6 +98,11 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
   return words;
 }
 
+FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
+  features.keep_edges = features.keep_edges || !sensor.IsMonocular();
+  return features;
+}
+
 }  // namespace
 
 void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera) {
@@ -114,7 +119,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            std::shared_ptr<const Vocabulary> vocabulary, bool remove_dynamic)
     : sensor_(sensor),
       depth_(depth),
-      extractor_(features),
+      extractor_(FeaturesOf(sensor, features)),
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
       remove_dynamic_(remove_dynamic) {

@@ -98,6 +98,18 @@ TEST(FeatureExtractor, FindsWeakCornersInCellsWithoutStrongOnes) {
   EXPECT_TRUE(FeatureExtractor(options).Extract(image).keypoints.empty());
 }
 
+TEST(FeatureExtractor, FindsNoFeaturesOnAStraightEdgeUnlessTheyAreKept) {
+  cv::Mat image = MakeDottedEdge(320, 240);
+  FeatureOptions options;
+  options.level_count = 1;
+  options.keep_edges = true;
+  EXPECT_GE(FeatureExtractor(options).Extract(image).keypoints.size(), 10u);
+  options.keep_edges = false;
+  EXPECT_TRUE(FeatureExtractor(options).Extract(image).keypoints.empty());
+  image(cv::Rect(60, 100, 3, 3)).setTo(85);  // a dot that is not beside the edge
+  EXPECT_EQ(FeatureExtractor(options).Extract(image).keypoints.size(), 1u);
+}
+
 TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {
   const cv::Mat image = MakeCornerImage();
   FeatureOptions options;

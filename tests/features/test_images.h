@@ -31,6 +31,17 @@ inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed 
   return image;
 }
 
+// A straight upright edge. Weak dots beside it are corners, but only the edge gives them a
+// position.
+inline cv::Mat MakeDottedEdge(int width, int height) {
+  cv::Mat image(height, width, CV_8UC1, cv::Scalar(60));
+  image.colRange(width / 2, width).setTo(200);
+  for (int y = 2; y < height; y += 12) {
+    image.at<uint8_t>(y, width / 2 - 3) = 85;
+  }
+  return image;
+}
+
 // A grey image of TUM freiburg1_xyz; empty if the data is not on this machine.
 inline cv::Mat LoadRealImage() {
   const auto path = FindTestData("fr1_xyz/rgb/1305031102.175304.jpg");

@@ -46,6 +46,7 @@ FeatureOptions FewFeatures() {
   FeatureOptions options;
   options.feature_count = 300;
   options.level_count = 4;
+  options.keep_edges = true;
   return options;
 }
 
@@ -102,6 +103,28 @@ TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   EXPECT_EQ(features.descriptors.size(), features.size());
   EXPECT_EQ(features.depth.size(), features.size());
   EXPECT_EQ(features.right_u.size(), features.size());
+}
+
+TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
+  ImageInput image;
+  image.grey = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(60));
+  image.grey.colRange(kWidth / 2, kWidth).setTo(200);
+  for (int y = 2; y < kHeight; y += 12) {
+    image.grey.at<uint8_t>(y, kWidth / 2 - 3) = 85;  // a corner, but only the edge is strong
+  }
+  Sensor monocular = sensor_;
+  monocular.kind = SensorKind::kMonocular;
+  FeatureOptions options = FewFeatures();
+  const auto count = [&](const Sensor& sensor) {
+    FrameBuilder builder(sensor, DepthOptions(), options);
+    return builder.Build(image, runner_).frame->features.size();
+  };
+  const size_t kept = count(monocular);
+  EXPECT_GE(kept, 10u);
+  options.keep_edges = false;
+  EXPECT_LT(count(monocular), kept / 2);
+  image.depth = cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(10000));
+  EXPECT_EQ(count(sensor_), kept);
 }
 
 TEST_F(FrameBuilderTest, HasOneWordPerKeypointWithAVocabulary) {

@@ -19,6 +19,10 @@ struct FeatureOptions {
   int minimum_fast_threshold = 7;   // for cells that have no corner at the initial threshold
 
   bool subpixel = false;  // refine positions to a fraction of a pixel
+  // Keep corners on straight edges, whose positions along the edge are uncertain. Frames with depth
+  // always keep them (FrameBuilder): depth holds their landmarks, and they hold poses across the
+  // edge.
+  bool keep_edges = false;
 
   // The largest number of levels for images of this size; 0 if they are smaller than one level.
   int MostLevels(int width, int height) const;
@@ -27,7 +31,7 @@ struct FeatureOptions {
   int FeaturesFor(int width, int height) const;
 
   // Binds the fields to ORB-SLAM2's keys `ORBextractor.nFeatures` and so on, and to
-  // `ORBextractor.subpixel`.
+  // `ORBextractor.subpixel` and `ORBextractor.keepEdges`.
   void Bind(OptionTable& options);
 };
 

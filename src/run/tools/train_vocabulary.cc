@@ -34,7 +34,7 @@ struct TrainVocabularyArguments {
   fs::path output;
   std::string form;
   VocabularyTraining training;
-  FeatureOptions features;
+  FeatureOptions features = {.keep_edges = true};  // RGB-D runs keep them, so words must fit them
   int threads = 0;
   bool quiet = false;
 };
