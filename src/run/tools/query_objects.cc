@@ -12,14 +12,13 @@
 
 #include "eval/object_metrics.h"
 #include "files/atomic_file.h"
-#include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
 #include "files/read_text.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_classes.h"
+#include "results/finished_run.h"
 #include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
@@ -29,7 +28,6 @@
 #include "scene/make_scene.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
-#include "sequences/run_sequence.h"
 #include "util/printable.h"
 #include "util/trim.h"
 #include "view/answer_sheet.h"
@@ -164,13 +162,11 @@ std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
 // The classes of the network that made the masks of the run: those of classes.txt beside the masks
 // if they are still there, else those of COCO, which most networks know.
 std::vector<std::string> NetworkClasses(const fs::path& source) {
-  const fs::path summary = source / "summary.json";
   std::error_code error;
   try {
-    if (fs::exists(summary, error)) {
-      const nlohmann::json json = ReadJson(summary);
-      const JsonNode provenance = JsonNode(summary, json).At("provenance");
-      if (const auto masks = FindRunInput(provenance.At("masks").Text(), source)) {
+    if (fs::exists(source / "summary.json", error)) {
+      const FinishedRun run = OpenFinishedRun(source);
+      if (const auto masks = run.Find(run.masks)) {
         return ReadClasses(*masks);
       }
     }
