@@ -35,6 +35,7 @@ class FinishedPipeline : public Pipeline {
   StageTimes times() const override { return {}; }
   std::map<ObjectRejection, size_t> object_rejections() const override { return {}; }
   const std::vector<ChangedObject>& object_changes() const override { return changes_; }
+  size_t contradicted_landmarks() const override { return 0; }
   const std::vector<std::shared_ptr<const Map>>& left_islands() const override { return left_; }
 
  private:
