@@ -33,8 +33,7 @@ import numpy as np  # noqa: E402
 plt.rcParams["text.parse_math"] = False  # a `$` in a name is a dollar
 DATA = re.compile(r'<script type="application/json" id="hullslam-data">(.*?)</script>', re.DOTALL)
 TYPES = {"f32": "<f4", "u32": "<u4", "u8": "u1"}
-ESTIMATE, TRUTH, MARK = "#0072b2", "#000000", "#d55e00"
-TURN = np.linspace(0.0, 2.0 * np.pi, 65)
+ESTIMATE, MARK = "#0072b2", "#d55e00"
 NEEDED = tuple(f"{part} left out" for part in ("trajectory", "keyframes", "landmarks", "objects"))
 
 
@@ -49,7 +48,7 @@ def link_run(arguments, folder):
     summary = read_json(arguments.run_dir / "summary.json")
     if arguments.sequence:
         summary.setdefault("provenance", {})["sequence"] = str(arguments.sequence.resolve())
-    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    (folder / "summary.json").write_text(json.dumps(summary))
 
 
 def make_report(run_dir, page):
@@ -122,8 +121,7 @@ class Run:
 
 
 def views_of(run):
-    """(title, names of the axes, directions (2 x 3)) of two views. Up is that of the report; forward
-    is where the first camera looks."""
+    """(title, names of the axes, directions) of two views. Forward is where the first camera looks."""
     if run.data.get("up") is None:
         return [("x and y of the run's world", "xy", np.eye(3)[[0, 1]]),
                 ("x and z of the run's world", "xz", np.eye(3)[[0, 2]])]
@@ -140,7 +138,8 @@ def ellipse_of(item, axes):
     """A polygon (65 x 2) on the parallel projection of an object."""
     half = axes @ rotation(item["rotation"]) @ np.diag(item["half_axes"])
     squares, directions = np.linalg.eigh(half @ half.T)
-    circle = np.sqrt(np.maximum(squares, 0.0))[:, None] * np.stack([np.cos(TURN), np.sin(TURN)])
+    turn = np.linspace(0.0, 2.0 * np.pi, 65)
+    circle = np.sqrt(np.maximum(squares, 0.0))[:, None] * np.stack([np.cos(turn), np.sin(turn)])
     return axes @ item["centre"] + (directions @ circle).T
 
 
@@ -148,7 +147,7 @@ def draw_view(plot, run, title, names, axes):
     """Draws the run along one axis. Returns the labels of the objects."""
     path = axes @ run.poses[:, :3].T
     plot.scatter(*(axes @ run.points.T), c=run.colours, s=1.5, alpha=0.5, linewidths=0)
-    plot.plot(*(axes @ run.truth.T), color=TRUTH, linewidth=2.6, alpha=0.4, label="ground truth")
+    plot.plot(*(axes @ run.truth.T), color="black", linewidth=2.6, alpha=0.4, label="ground truth")
     for i, part in enumerate(np.split(path, run.gaps, axis=1)):
         plot.plot(*part, color=ESTIMATE, linewidth=1.2, label=None if i else "HullSLAM")
     for i, gap in enumerate(run.gaps):
@@ -187,8 +186,7 @@ def draw_over_time(plot, run):
 
 
 def draw_labels(plot, labels):
-    """Draws (text, point) in a figure whose layout is final. A label that would cover an earlier one is
-    left out. Returns the number of labels that were drawn."""
+    """Draws (text, point) unless it would cover an earlier label. Returns how many were drawn."""
     taken, frame = [], plot.get_window_extent()
     for text, point in labels:
         label = plot.text(*point, one_line(text, 40), fontsize=7, ha="center", va="center",
@@ -225,12 +223,12 @@ def draw(run, path, name):
 
 def draw_overlay(plot, picture, colours):
     """Draws a picture of the report. Returns the labels of its ellipses."""
-    data, labels = base64.b64decode(picture["image"].partition(",")[2]), []
-    plot.imshow(plt.imread(io.BytesIO(data), format="jpeg"), cmap="gray")
+    data, labels = io.BytesIO(base64.b64decode(picture["image"].partition(",")[2])), []
+    plot.imshow(plt.imread(data, format="jpeg"), cmap="gray")
     for shape, dashes in [*((shape, ":") for shape in picture["outlines"]),
                           *((shape, "-") for shape in picture["ellipses"])]:
         points = np.reshape(shape["points"], (-1, 2))
-        plot.fill(*points.T, dashes, fill=False, edgecolor=colours.get(shape["class"], MARK))
+        plot.fill(*points.T, fill=False, ls=dashes, lw=1.4, ec=colours.get(shape["class"], MARK))
         if dashes == "-":
             labels.append((f"{shape['class']} {shape['object']}", points.mean(axis=0)))
     plot.set(xlim=(-0.5, picture["width"] - 0.5), ylim=(picture["height"] - 0.5, -0.5),

@@ -50,8 +50,8 @@ def require(*packages):
         script = sys.argv[0]
         print(f"error: {sys.executable} has no {' and no '.join(missing)}. Scripts use Debian's "
               f"packages: start {script} itself or /usr/bin/python3 {script}, not another python3; "
-              f"scripts/setup.sh installs {' '.join(f'python3-{package}' for package in missing)}",
-              file=sys.stderr)
+              "scripts/setup.sh installs "
+              f"{' '.join(f'python3-{package.lower()}' for package in missing)}", file=sys.stderr)
         sys.exit(2)
 
 

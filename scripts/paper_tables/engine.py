@@ -30,6 +30,7 @@ LINE_EVERY = 20.0  # s, between two lines of progress that go to a file
 WEIGHTS = {"rendered": 4.0, "degraded": 1.0}  # the time of a frame in relation to that of a run
 STOPPED = {signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP}
 SET_PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+PRCTL = ctypes.CDLL(None).prctl  # loaded here, because a new process of many threads must load nothing
 SNAKEFILE = pathlib.Path(__file__).resolve().parent / "Snakefile"
 
 
@@ -86,8 +87,7 @@ class Programs:
                     process = subprocess.Popen(
                         command, stdout=file, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                         env={**os.environ, **(environment or {})}, start_new_session=True,
-                        preexec_fn=lambda: ctypes.CDLL(None).prctl(SET_PARENT_DEATH_SIGNAL,
-                                                                   signal.SIGKILL))
+                        preexec_fn=lambda: PRCTL(SET_PARENT_DEATH_SIGNAL, signal.SIGKILL))
                 except OSError as error:
                     raise InputError(f"{command[0]}: {error.strerror}") from error
                 self.running.add(process)
@@ -147,7 +147,7 @@ def work_off(jobs, count, look=lambda: None):
     """Makes the jobs {name: (function, names of the jobs before)}, `count` at once and in their order,
     and calls look() now and then. Returns {name: what the function returns}. The first error ends
     all programs."""
-    waiting, running, results = dict(jobs), {}, {}
+    waiting, running, results, PROGRAMS.is_ended = dict(jobs), {}, {}, False
     with concurrent.futures.ThreadPoolExecutor(count) as pool:
         try:
             while waiting or running:

@@ -31,7 +31,8 @@ nav a { margin-right: 1em; } ul.notes { font-size: 13px; color: #444; }
 
 
 def link(text, run):
-    return f'<a href="{html.escape(plots.link_of(run))}">{html.escape(text)}</a>' if run else html.escape(text)
+    text = html.escape(text)
+    return f'<a href="{html.escape(plots.link_of(run))}">{text}</a>' if run else text
 
 
 def cell_html(item):

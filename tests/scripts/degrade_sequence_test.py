@@ -11,8 +11,11 @@ import unittest
 import numpy as np
 import PIL.Image
 
+from in_process import run_main
+
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "degrade_sequence.py"
 sys.path.insert(0, str(SCRIPT.parent))
+import degrade_sequence  # noqa: E402
 import disturbances  # noqa: E402
 import tum_and_icl  # noqa: E402
 import yolo_masks  # noqa: E402
@@ -52,11 +55,15 @@ class DegradeSequenceTest(unittest.TestCase):
             f"{9.95 + i / 20:.6f} {9.95 + i / 20:.6f} 0 0 0 0 0 1\n" for i in range(18)))
 
     def run_script(self, *arguments, code=0):
-        result = subprocess.run([SCRIPT, self.sequence, self.out, *map(str, arguments)],
-                                capture_output=True, text=True, check=False, timeout=300)
+        result = run_main(degrade_sequence.main, self.sequence, self.out, *arguments)
         self.assertEqual(result.returncode, code, result.stderr)
-        self.assertNotIn("Traceback", result.stderr)
         return result
+
+    def test_as_a_program(self):
+        for arguments, code in (([], 0), (["--blur"], 2)):
+            result = subprocess.run([SCRIPT, self.sequence, self.out, *arguments], capture_output=True,
+                                    text=True, check=False)
+            self.assertEqual(result.returncode, code, result.stderr)
 
     def rows(self, name):
         return [line.split() for line in (self.out / name).read_text().splitlines()

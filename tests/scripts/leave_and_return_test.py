@@ -4,12 +4,18 @@
 
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import PIL.Image
 
+from in_process import run_main
+
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "leave_and_return.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import leave_and_return  # noqa: E402
+
 STAMPS = (10.0, 10.1, 10.2, 10.3)
 
 
@@ -39,8 +45,13 @@ class LeaveAndReturnTest(unittest.TestCase):
         return sequence
 
     def run_script(self, *arguments):
-        return subprocess.run([SCRIPT, self.room, self.out, *map(str, arguments)],
-                              capture_output=True, text=True, check=False, timeout=60)
+        return run_main(leave_and_return.main, self.room, self.out, *arguments)
+
+    def test_as_a_program(self):
+        for arguments, code in (["--again"], 0), (["--at", "1"], 2):
+            result = subprocess.run([SCRIPT, self.room, self.out, *arguments], capture_output=True,
+                                    text=True, check=False)
+            self.assertEqual(result.returncode, code, result.stderr)
 
     def rows(self, name):
         return [line.split() for line in (self.out / name).read_text().splitlines()

@@ -4,7 +4,6 @@
 the program `view` for, and broken files."""
 
 import base64
-import contextlib
 import io
 import json
 import pathlib
@@ -15,6 +14,8 @@ import unittest
 import unittest.mock
 
 import numpy as np
+
+from in_process import run_main
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
 sys.path.insert(0, str(SCRIPT.parent))
@@ -73,12 +74,9 @@ class PlotRunTest(unittest.TestCase):
         self.dir.mkdir()
 
     def plot(self, *arguments):
-        """Runs the script in this process, which is faster than starting a new one."""
-        out, errors = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
-            code = plot_run.main([str(word) for word in (self.dir, *arguments)])
+        result = run_main(plot_run.main, self.dir, *arguments)
         plot_run.plt.close("all")
-        return subprocess.CompletedProcess(arguments, code, out.getvalue(), errors.getvalue())
+        return result
 
     def plot_report(self, *arguments, **changes):
         (self.dir / "report.html").write_text(page_of(parts(**changes)))
@@ -148,6 +146,13 @@ class PlotRunTest(unittest.TestCase):
                                         lambda plot, shown, _: drawn.append(shown["time"]) or []):
             self.plot_report("--overlay", "3")
         self.assertEqual(drawn, [0.0, 0.5, 0.8])
+
+    def test_outlines_of_masks_are_dotted_and_ellipses_are_not(self):
+        _, plot = plot_run.plt.subplots()
+        (label, point), = plot_run.draw_overlay(plot, picture(0.0), {"cup": "red"})
+        self.assertEqual([patch.get_linestyle() for patch in plot.patches], [":", "-"])
+        self.assertEqual((label, point.tolist()), ("cup 0", [20.0, 50.0 / 3.0]))
+        plot_run.plt.close("all")
 
     def test_overlays_need_images(self):
         self.assert_refused(self.plot_report("--overlay", "2", images=None), "--sequence")

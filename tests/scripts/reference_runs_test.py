@@ -90,8 +90,9 @@ class ReferenceRuns(unittest.TestCase):
         refused = self.run_script("store")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("refused its input", refused.stderr)
-        (self.folder / "reference.json").write_text("[1]", encoding="utf-8")
-        self.assertIn("expected hashes", self.run_script("compare").stderr)
+        for text, told in (("[1]", "expected a JSON object"), ('{"a": 1}', "expected hashes")):
+            (self.folder / "reference.json").write_text(text, encoding="utf-8")
+            self.assertIn(told, self.run_script("compare").stderr)
         self.assertEqual(self.run_script("compare", "--masks", self.folder).returncode, 2)
 
     def test_stored_hashes_are_json_by_run(self):
