@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/util/error.h"
 #include "sequences/image_file.h"
 
 namespace hullslam {
@@ -22,11 +23,20 @@ const cv::Scalar kPaper(255, 255, 255);
 const cv::Scalar kInk(40, 40, 40);
 const cv::Scalar kOutline(0, 140, 255);  // orange
 
-cv::Mat DrawCutout(const ViewPicture& picture) {
-  if (picture.jpeg.empty()) {
+// Empty if the picture is no image.
+cv::Mat DecodeCutout(const ViewPicture& picture) {
+  try {
+    return DecodeColourImage("", picture.jpeg);
+  } catch (const InputError&) {
     return {};
   }
-  cv::Mat image = DecodeColourImage("a picture of the run", picture.jpeg);
+}
+
+cv::Mat DrawCutout(const ViewPicture& picture) {
+  cv::Mat image = DecodeCutout(picture);
+  if (image.empty()) {
+    return image;
+  }
   const double scale = static_cast<double>(kTile) / std::max(image.cols, image.rows);
   cv::resize(image, image, {}, scale, scale, cv::INTER_LINEAR);
   for (const ViewShape& outline : picture.outlines) {
