@@ -8,7 +8,7 @@ files are compiled together, so all names of a target must differ. Functions may
 if their parameters differ, and aliases may be equal if they stand for the same text.
 
 The .cc files of one folder make a target; src/run is one target with its folders. The targets of
-Examples and bench have one file each, and tests/integration is compiled file by file.
+Examples and bench have one file each.
 
 The reader knows no macros. It removes comments and literals and then takes the name from the text of
 each declaration: the word after struct, class, union, enum or using, the word before the first
@@ -23,7 +23,7 @@ import sys
 from check_function_length import closing_brace, hide, line_of, without_brackets, without_template
 
 FOLDERS = ("src", "tests", "tools")
-SEPARATE = ("tests/integration", "tests/consumer")
+SEPARATE = ("tests/consumer",)
 JOINED = "src/run"
 
 NAMESPACE = re.compile(r"(?:inline\s+)?namespace\b\s*([\w:]*)$")

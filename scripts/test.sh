@@ -1,20 +1,25 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: scripts/test.sh [--preset NAME]...
+# Usage: scripts/test.sh [--all] [--preset NAME]...
 #
-# Installs packages, builds and runs all tests with each of the given presets, one after the other.
-# NAME is release (default), debug, asan, tsan or tidy. The preset tidy runs clang-tidy on every file
-# while it builds, and runs no tests.
+# Installs packages, builds and runs the tests with each of the given presets, one after the other.
+# Without --all, the tests with the label "slow" are left out. NAME is release (default), debug, asan,
+# tsan or tidy. The preset tidy runs clang-tidy on every file while it builds, and runs no tests.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
 
 presets=()
+selection=(--label-exclude slow)
 while [ $# -gt 0 ]; do
   case "$1" in
     -h | --help)
       print_help
       exit 0
+      ;;
+    --all)
+      selection=()
+      shift
       ;;
     --preset)
       case "${2:-}" in
@@ -38,6 +43,6 @@ for preset in "${presets[@]}"; do
   cmake --build --preset "$preset" -j "$jobs"
   if [ "$preset" != tidy ]; then
     step "test ($preset)"
-    ctest --preset "$preset" -j "$jobs"
+    ctest --preset "$preset" -j "$jobs" "${selection[@]}"
   fi
 done

@@ -11,6 +11,7 @@
 #include "hullslam/eval/rpe.h"
 #include "hullslam/settings/settings.h"
 #include "map/islands.h"
+#include "run/git_revision.h"
 #include "run/messages.h"
 
 namespace hullslam {
@@ -132,7 +133,7 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
                          ProvenanceSummary& provenance) {
   provenance.program = arguments.program;
   provenance.version = HULLSLAM_VERSION;
-  provenance.git = HULLSLAM_GIT;
+  provenance.git = GitRevision();
   provenance.settings_hash = HashSettings(settings.options);
   AddPreset(settings, provenance);
   provenance.seed = arguments.seed;

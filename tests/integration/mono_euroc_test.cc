@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 16;
+constexpr int kEurocFrames = 16;
 
 // The pose of the camera in the body: a rotation by 90 degrees about z, and a shift.
 const Rigid3 kBodyFromCam{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())),
@@ -84,21 +84,21 @@ class MonoEuroc : public MonoProgram {
 };
 
 TEST_F(MonoEuroc, MakesAMapWithTheCameraOfTheSequence) {
-  const RenderedDesk desk(kFrames);
+  const RenderedDesk desk(kEurocFrames);
   const ImageSequence images = desk.images();
   WriteImages(images.frames);
   WriteSensor(desk.camera());
   WriteStates(ReadGroundtruth(images).value());
-  ExpectMap({path_}, kFrames);
+  ExpectMap({path_}, kEurocFrames);
   EXPECT_LE(Ate(), 0.005);
-  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kEurocFrames);
   EXPECT_NEAR(ReadTrajectory(output_ / "groundtruth.txt").front().timestamp,
               images.frames.front().timestamp, 1e-6);
   const std::string poses = ReadFile(output_ / "trajectory.txt");
-  ExpectMap({path_ + "/mav0", "--settings", desk.settings()}, kFrames);
+  ExpectMap({path_ + "/mav0", "--settings", desk.settings()}, kEurocFrames);
   EXPECT_TRUE(ReadFile(output_ / "trajectory.txt") == poses) << "the camera is the same";
   fs::remove_all(path_ + "/mav0/state_groundtruth_estimate0");
-  ExpectMap({path_, "--quiet"}, kFrames);
+  ExpectMap({path_, "--quiet"}, kEurocFrames);
   EXPECT_TRUE(Summary()["trajectory"]["ate_rmse_m"].is_null());
 }
 

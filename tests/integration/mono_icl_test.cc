@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 20;
-constexpr double kSmall = 0.010;  // m
+constexpr int kMonoIclFrames = 20;
+constexpr double kMonoIclSmall = 0.010;  // m
 
 class MonoIcl : public MonoProgram {
  protected:
@@ -24,14 +24,15 @@ class MonoIcl : public MonoProgram {
 // A mirrored path fits with no rotation and no scale. The large error of the wrong axis shows that
 // the test can notice this.
 TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
-  MadeRoom().WriteIclTum(path_, kFrames, true);
-  const ProgramResult result = ExpectMap({path_}, kFrames);
+  MadeRoom().WriteIclTum(path_, kMonoIclFrames, true);
+  const ProgramResult result = ExpectMap({path_}, kMonoIclFrames);
   ExpectParts(result.output, {"package tum", "y up, mirrored"});
-  EXPECT_LE(Ate(), kSmall);
-  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames - 1) << "the first frame has no true pose";
-  EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kFrames - 1U);
+  EXPECT_LE(Ate(), kMonoIclSmall);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kMonoIclFrames - 1)
+      << "the first frame has no true pose";
+  EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kMonoIclFrames - 1U);
   const double right = Ate();
-  ExpectMap({path_, "--groundtruth-y", "down"}, kFrames);
+  ExpectMap({path_, "--groundtruth-y", "down"}, kMonoIclFrames);
   EXPECT_GT(Ate(), 2.0 * right);
 }
 
@@ -39,7 +40,7 @@ TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
 TEST_F(MonoIcl, ThePovrayPackageIsTrackedWithoutDepth) {
   fs::create_directory(path_);
   const MadeRoom room(2);
-  room.WriteIclPovray(path_, kFrames);
+  room.WriteIclPovray(path_, kMonoIclFrames);
   for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
     if (entry.path().extension() == ".depth") {
       fs::resize_file(entry.path(), 0);
@@ -50,9 +51,9 @@ TEST_F(MonoIcl, ThePovrayPackageIsTrackedWithoutDepth) {
                     "%YAML:1.0\nCamera.fx: 240.6\nCamera.fy: -240.0\nCamera.cx: 159.75\n"
                     "Camera.cy: 119.75\nCamera.width: 320\nCamera.height: 240\n");
   const ProgramResult result =
-      ExpectMap({"none", settings, path_, "--povray-units", "100"}, kFrames);
+      ExpectMap({"none", settings, path_, "--povray-units", "100"}, kMonoIclFrames);
   ExpectParts(result.output, {"package povray"});
-  EXPECT_LE(Ate(), 1.5 * kSmall) << "the images are half as large";
+  EXPECT_LE(Ate(), 1.5 * kMonoIclSmall) << "the images are half as large";
   ExpectRefusal({path_}, {"scene_00_0000.png", "320x240", "640x480"});
 }
 

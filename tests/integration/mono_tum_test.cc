@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 16;
+constexpr int kMonoTumFrames = 16;
 
 class MonoTum : public MonoProgram {
  protected:
@@ -24,8 +24,8 @@ class MonoTum : public MonoProgram {
 };
 
 TEST_F(MonoTum, MakesAMapAndGivesPosesToTheFramesBeforeIt) {
-  const RenderedDesk desk(kFrames);
-  const ProgramResult result = ExpectMap({desk.path()}, kFrames);
+  const RenderedDesk desk(kMonoTumFrames);
+  const ProgramResult result = ExpectMap({desk.path()}, kMonoTumFrames);
   ExpectParts(result.output, {"16 frames: 16 tracked, 0 lost, 0 skipped; first map after 0.",
                               "sim3 alignment, 16 pairs of poses, coverage 100.0 %"});
   ExpectParts(result.errors, {"initialising: too little parallax"});
@@ -38,19 +38,19 @@ TEST_F(MonoTum, MakesAMapAndGivesPosesToTheFramesBeforeIt) {
   }
   EXPECT_GT(failures, 0.0);
   EXPECT_NEAR(initialisation["seconds"].get<double>(), failures / 30.0, 1e-4);
-  ExpectMap({desk.path(), "--threaded"}, kFrames);
+  ExpectMap({desk.path(), "--threaded"}, kMonoTumFrames);
   EXPECT_LE(Ate(), 0.005);
 }
 
 TEST_F(MonoTum, RunsGiveTheSameBytesAlsoWithTheThreeArgumentsOfOrbSlam2) {
-  const RenderedDesk desk(kFrames);
+  const RenderedDesk desk(kMonoTumFrames);
   const Arguments three = {"none", desk.settings(), desk.path(), "--quiet"};
-  ExpectMap(three, kFrames);
+  ExpectMap(three, kMonoTumFrames);
   const std::string poses = ReadFile(output_ / "trajectory.txt");
   const std::string keyframes = ReadFile(output_ / "keyframes.txt");
   const std::string map = ReadFile(output_ / "map.ply");
   for (const Arguments& again : {three, {desk.path(), "--vocabulary", "none", "--quiet"}}) {
-    const ProgramResult result = ExpectMap(again, kFrames);
+    const ProgramResult result = ExpectMap(again, kMonoTumFrames);
     EXPECT_EQ(result.output + result.errors, "");
     EXPECT_TRUE(ReadFile(output_ / "trajectory.txt") == poses);
     EXPECT_TRUE(ReadFile(output_ / "keyframes.txt") == keyframes);

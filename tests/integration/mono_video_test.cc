@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 16;
+constexpr int kVideoFrames = 16;
 
 class MonoVideo : public MonoProgram {
  protected:
@@ -54,32 +54,32 @@ class MonoVideo : public MonoProgram {
     }
     const AteReport ate = EvaluateAte(truth, Poses(), {.alignment = AlignmentKind::kSim3});
     EXPECT_TRUE(ate.ok()) << ate.failure;
-    EXPECT_EQ(ate.pairs, static_cast<size_t>(kFrames));
+    EXPECT_EQ(ate.pairs, static_cast<size_t>(kVideoFrames));
     return ate.errors.rmse;
   }
 };
 
 TEST_F(MonoVideo, AVideoAndAFolderOfImagesMakeAMap) {
-  const RenderedDesk desk(kFrames);
+  const RenderedDesk desk(kVideoFrames);
   const std::string video = WriteVideo(desk);
-  const ProgramResult calibrated = ExpectMap({video, "--settings", desk.settings()}, kFrames);
+  const ProgramResult calibrated = ExpectMap({video, "--settings", desk.settings()}, kVideoFrames);
   ExpectParts(calibrated.output, {"16 images of 640x480 px", "those of the video, 30 images"});
   EXPECT_EQ(calibrated.output.find("first try"), std::string::npos) << calibrated.output;
   EXPECT_LE(AteOf(desk), 0.005);
   EXPECT_TRUE(Summary()["trajectory"]["ate_rmse_m"].is_null()) << "there is no ground truth";
-  const ProgramResult guessed = ExpectMap({video, "--fov", "62"}, kFrames);
+  const ProgramResult guessed = ExpectMap({video, "--fov", "62"}, kVideoFrames);
   ExpectParts(guessed.output, {"62 degrees", "for a first try only", "use --settings"});
   EXPECT_LE(AteOf(desk), 0.010);
-  ExpectMap({video, "--fov", "62", "--fps", "15", "--quiet"}, kFrames);
-  EXPECT_NEAR(Poses().back().timestamp, (kFrames - 1) / 15.0, 1e-6);
+  ExpectMap({video, "--fov", "62", "--fps", "15", "--quiet"}, kVideoFrames);
+  EXPECT_NEAR(Poses().back().timestamp, (kVideoFrames - 1) / 15.0, 1e-6);
   const ProgramResult folder =
-      ExpectMap({desk.path() / "rgb", "--settings", desk.settings()}, kFrames);
+      ExpectMap({desk.path() / "rgb", "--settings", desk.settings()}, kVideoFrames);
   ExpectParts(folder.output, {"30 images per second, the default"});
   EXPECT_LE(AteOf(desk), 0.005);
 }
 
 TEST_F(MonoVideo, TheErrorAgainstGroundTruthNeedsStampsThatFit) {
-  const RenderedDesk desk(kFrames);
+  const RenderedDesk desk(kVideoFrames);
   const std::string images = desk.path() / "rgb";
   const std::string truth = desk.path() / "groundtruth.txt";
   const double start = ReadGroundtruth(desk.images())->front().timestamp;
@@ -88,9 +88,9 @@ TEST_F(MonoVideo, TheErrorAgainstGroundTruthNeedsStampsThatFit) {
   Arguments arguments = {images, "--groundtruth", truth, "--stamp-offset",
                          fmt::format("{:.6f}", start)};
   arguments.insert(arguments.end(), camera.begin(), camera.end());
-  ExpectMap(arguments, kFrames);
+  ExpectMap(arguments, kVideoFrames);
   EXPECT_LE(Ate(), 0.005);
-  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kVideoFrames);
   EXPECT_NEAR(Poses().front().timestamp, start, 1e-6);
   ExpectRefusal({images, "--fov", "60", "--groundtruth", Path("late.txt")},
                 {"late.txt", "but the images are from 0.000000 to 0.5", "--stamp-offset"});

@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-constexpr int kFrames = 100;
+constexpr int kPresetFrames = 100;
 
 class PresetRuns : public ::testing::Test {
  protected:
-  explicit PresetRuns(int frames = kFrames) : desk_(frames) {}
+  explicit PresetRuns(int frames = kPresetFrames) : desk_(frames) {}
 
   std::string Masks() const { return desk_.path() / "masks"; }
   ProgramResult Run(const std::string& program, std::vector<std::string> arguments) const {
@@ -51,7 +51,7 @@ void PresetRuns::RunAllPrograms(const std::string& preset) const {
   const Json summary = Summary();
   EXPECT_EQ(summary["provenance"]["preset"], preset);
   EXPECT_TRUE(summary["provenance"]["preset_overrides"].empty());
-  EXPECT_EQ(summary["trajectory"]["tracked"], kFrames);
+  EXPECT_EQ(summary["trajectory"]["tracked"], kPresetFrames);
   EXPECT_LT(summary["trajectory"]["ate_rmse_m"], 0.01);
   EXPECT_EQ(summary["objects"]["count"] > 0, has_objects) << summary["objects"];
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 using Arguments = std::vector<std::string>;
 
-constexpr int kFrames = 12;
+constexpr int kBagFrames = 12;
 
 // A rendered sequence with masks, its run by rgbd_tum, and recordings that a script of the tests
 // makes of it.
@@ -29,7 +29,7 @@ class RgbdBag : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder();
-    desk_ = new RenderedDesk(kFrames);
+    desk_ = new RenderedDesk(kBagFrames);
     Arguments arguments = {desk_->path(), "--masks", desk_->path() / "masks"};
     Run("rgbd_tum", arguments, "tum", 0);
   }
@@ -108,7 +108,7 @@ TEST_F(RgbdBag, TheCameraIsThatOfTheRecording) {
   Run("mono_bag", {bag, "--groundtruth", truth}, "mono", 0);
   Run("mono_tum", {desk_->path()}, "mono_tum", 0);
   const auto mono = nlohmann::json::parse(ReadFile(Path("mono/summary.json")));
-  EXPECT_EQ(mono["trajectory"]["tracked"], kFrames);
+  EXPECT_EQ(mono["trajectory"]["tracked"], kBagFrames);
   EXPECT_LE(mono["trajectory"]["ate_rmse_m"], 0.005);
 }
 
@@ -161,9 +161,9 @@ TEST_F(RgbdBag, ARunIsWrittenAsARecordingThatCanBeRunAgain) {
                                                   {"/map/points", 1},
                                                   {"/map/objects", 1},
                                                   {"/map/scene", 1},
-                                                  {"/tf", kFrames},
-                                                  {"/camera/camera_info", kFrames},
-                                                  {"/camera/image/compressed", kFrames}};
+                                                  {"/tf", kBagFrames},
+                                                  {"/camera/camera_info", kBagFrames},
+                                                  {"/camera/image/compressed", kBagFrames}};
   EXPECT_EQ(counts, expected);
   Run("mono_bag", {Path("a.mcap"), "--report"}, "from_mcap", 0);
 }

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 using Json = nlohmann::json;
 
-constexpr int kFrames = 16;
-constexpr double kSmall = 0.004;  // m
+constexpr int kRgbdIclFrames = 16;
+constexpr double kRgbdIclSmall = 0.004;  // m
 
 class RgbdIcl : public ::testing::Test {
  protected:
@@ -44,9 +44,9 @@ class RgbdIcl : public ::testing::Test {
   }
   Json Trajectory() const { return Json::parse(ReadFile(output_ / "summary.json"))["trajectory"]; }
   void ExpectSmallError(int pairs) const {
-    EXPECT_EQ(Trajectory()["tracked"], kFrames);
+    EXPECT_EQ(Trajectory()["tracked"], kRgbdIclFrames);
     EXPECT_EQ(Trajectory()["pairs"], pairs);
-    EXPECT_LT(Trajectory()["ate_rmse_m"].get<double>(), kSmall);
+    EXPECT_LT(Trajectory()["ate_rmse_m"].get<double>(), kRgbdIclSmall);
   }
 
   TemporaryFolder folder_;
@@ -57,17 +57,17 @@ class RgbdIcl : public ::testing::Test {
 
 TEST_F(RgbdIcl, AGroundTruthWithEitherAxisFitsTheTrajectory) {
   for (const bool is_up : {true, false}) {
-    room_.WriteIclTum(path_, kFrames, is_up);
+    room_.WriteIclTum(path_, kRgbdIclFrames, is_up);
     const ProgramResult result = RunWell({path_});
     EXPECT_NE(result.output.find("package tum"), std::string::npos) << result.output;
     EXPECT_NE(result.output.find(is_up ? "y up, mirrored" : "y down"), std::string::npos);
-    ExpectSmallError(kFrames - 1);  // the first frame has no true pose
+    ExpectSmallError(kRgbdIclFrames - 1);  // the first frame has no true pose
   }
 }
 
 // A mirrored trajectory does not fit. This shows that the other tests can notice a wrong axis.
 TEST_F(RgbdIcl, TheWrongAxisGivesALargeError) {
-  room_.WriteIclTum(path_, 2 * kFrames, true);
+  room_.WriteIclTum(path_, 2 * kRgbdIclFrames, true);
   RunWell({path_, "--quiet"});
   const double right = Trajectory()["ate_rmse_m"];
   const ProgramResult result = RunWell({path_, "--groundtruth-y", "down"});
@@ -76,7 +76,7 @@ TEST_F(RgbdIcl, TheWrongAxisGivesALargeError) {
 }
 
 TEST_F(RgbdIcl, TheConvertedGroundTruthIsWrittenForOtherPrograms) {
-  room_.WriteIclTum(path_, kFrames, true);
+  room_.WriteIclTum(path_, kRgbdIclFrames, true);
   const ProgramResult quiet = RunWell({path_, "--quiet"});
   EXPECT_EQ(quiet.output + quiet.errors, "");
   const ProgramResult result = RunProgram("evaluate", {"trajectory", output_ / "groundtruth.txt",
@@ -93,11 +93,11 @@ TEST_F(RgbdIcl, TheConvertedGroundTruthIsWrittenForOtherPrograms) {
 
 TEST_F(RgbdIcl, ThePovrayPackageIsTracked) {
   fs::create_directory(path_);
-  room_.WriteIclPovray(path_, kFrames);
+  room_.WriteIclPovray(path_, kRgbdIclFrames);
   const ProgramResult result = RunWell({path_, "--povray-units", "100"});
   EXPECT_EQ(result.errors.find("warning"), std::string::npos) << result.errors;
   EXPECT_NE(result.output.find("package povray"), std::string::npos) << result.output;
-  ExpectSmallError(kFrames);
+  ExpectSmallError(kRgbdIclFrames);
 }
 
 TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
@@ -110,13 +110,13 @@ TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
 
 // The fourth argument is the association file. The settings have fy = -480, as in other programs.
 TEST_F(RgbdIcl, TakesTheFourArgumentsOfOrbSlam2) {
-  room_.WriteIclTum(path_, kFrames, true);
+  room_.WriteIclTum(path_, kRgbdIclFrames, true);
   const std::string settings = folder_.Write(
       "ICL.yaml",
       "%YAML:1.0\nCamera.fx: 481.2\nCamera.fy: -480.0\nCamera.cx: 319.5\nCamera.cy: 239.5\n");
   fs::rename(fs::path(path_) / "associations.txt", folder_.path() / "pairs.txt");
   RunWell({"none", settings, path_, folder_.path() / "pairs.txt"});
-  ExpectSmallError(kFrames - 1);
+  ExpectSmallError(kRgbdIclFrames - 1);
   const ProgramResult tum = RunProgram("rgbd_tum", {"none", settings, path_, "none.txt"});
   EXPECT_EQ(tum.exit_code, 2);
 }

@@ -18,6 +18,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "support/made_vocabulary.h"
 #include "support/plane_sequence.h"
+#include "support/read_folder.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"
@@ -49,15 +50,6 @@ class EditedFile {
   fs::path path_;
   std::string former_;
 };
-
-// The bytes of all files of a folder, by name, including temporary files.
-std::map<std::string, std::string> ReadFolder(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    files[entry.path().filename()] = ReadFile(entry.path());
-  }
-  return files;
-}
 
 std::string EncodePng(const cv::Mat& image) {
   std::vector<uchar> bytes;

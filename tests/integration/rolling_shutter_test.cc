@@ -14,10 +14,10 @@
 namespace hullslam {
 namespace {
 
-constexpr int kFrames = 60;
+constexpr int kShutterFrames = 60;
 
 const RenderedDesk& Desk() {
-  static const RenderedDesk desk(kFrames, 0.03);
+  static const RenderedDesk desk(kShutterFrames, 0.03);
   return desk;
 }
 
@@ -29,7 +29,7 @@ double RunAte(const std::string& program, std::vector<std::string> arguments) {
   const ProgramResult result = RunProgram(program, arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   const auto summary = nlohmann::json::parse(ReadFile(output + "/summary.json"));
-  EXPECT_EQ(summary["trajectory"]["tracked"], kFrames);
+  EXPECT_EQ(summary["trajectory"]["tracked"], kShutterFrames);
   return 1e3 * summary["trajectory"]["ate_rmse_m"].get<double>();
 }
 

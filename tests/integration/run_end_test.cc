@@ -16,6 +16,7 @@
 #include "files/text_rows.h"
 #include "hullslam/results/trajectory_file.h"
 #include "support/plane_sequence.h"
+#include "support/read_folder.h"
 #include "support/run_program.h"
 #include "support/running_program.h"
 #include "support/temporary_folder.h"
@@ -27,15 +28,6 @@ namespace fs = std::filesystem;
 
 using Arguments = std::vector<std::string>;
 using Json = nlohmann::json;
-
-// The bytes of all files of a folder, by name, including hidden ones.
-std::map<std::string, std::string> ReadFolder(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    files[entry.path().filename()] = entry.is_directory() ? "folder" : ReadFile(entry.path());
-  }
-  return files;
-}
 
 class RunEnd : public ::testing::Test {
  protected:

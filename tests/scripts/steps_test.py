@@ -116,6 +116,12 @@ class StepsTest(unittest.TestCase):
         self.assertTrue(calls[-1].startswith("ctest --preset release"))
         self.assertTrue(result.stdout.endswith("100% tests passed\n"))
 
+    def test_slow_tests_run_only_with_all(self):
+        for arguments, is_run in (((), False), (("--all",), True)):
+            with self.subTest(arguments=arguments):
+                _, calls = self.run_script("test.sh", *arguments)
+                self.assertEqual("--label-exclude slow" not in calls[-1], is_run, calls[-1])
+
     def test_failing_tests_fail(self):
         self.stand_in("path/ctest", "exit 8")
         result, _ = self.run_script("test.sh")
