@@ -2,7 +2,9 @@
 # here, so that an unsupported system gives an error when CMake configures and not during the build.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d calib3d)
+find_package(PNG 1.6 REQUIRED)
+find_package(JPEG 62 REQUIRED)  # libjpeg-turbo 2.1, which has the interface of libjpeg 6b
 find_package(Ceres 2.1 REQUIRED)
 find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; needs GMP and MPFR
 find_package(nlohmann_json 3.11 REQUIRED)

@@ -21,6 +21,8 @@ set(soname ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(same "(= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libhullslam${soname})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+# The library loads FFmpeg 5.1 when a video is opened, so dpkg-shlibdeps does not see it.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libavformat59, libavcodec59, libavutil57, libswscale6")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libhullslam-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libhullslam${soname} ${same}, libeigen3-dev, libopencv-dev")

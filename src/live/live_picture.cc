@@ -7,7 +7,7 @@
 #include <string>
 
 #include "hullslam/geometry/dual_quadric.h"
-#include "sequences/image_file.h"
+#include "sequences/jpeg_codec.h"
 #include "util/thin.h"
 
 namespace hullslam {

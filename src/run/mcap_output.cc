@@ -14,7 +14,7 @@
 #include "run/mcap_messages.h"
 #include "run/messages.h"
 #include "sequences/frame_colour.h"
-#include "sequences/image_file.h"
+#include "sequences/jpeg_codec.h"
 #include "system/make_sensor.h"
 #include "view/run_pictures.h"
 #include "view/view_of_map.h"

@@ -38,9 +38,7 @@ cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view byte
 cv::Mat DecodeColourImage(const std::filesystem::path& name, std::string_view bytes);
 cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view bytes);
 
-// The bytes of a file with this image. `extension` tells its format, as in ".png".
+// The bytes of a file with this image. `extension` is ".png", ".jpg" or ".jpeg".
 std::string EncodeImage(const cv::Mat& image, const std::string& extension);
-// The bytes of a JPEG file. `quality` is from 0 to 100.
-std::string EncodeJpeg(const cv::Mat& image, int quality);
 
 }  // namespace hullslam

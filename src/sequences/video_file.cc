@@ -12,14 +12,12 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "sequences/ffmpeg.h"
 #include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/display.h>
-#include <libswscale/swscale.h>
 }
 
 namespace hullslam {
@@ -41,7 +39,8 @@ struct Turn {
 // angles and reflections; of any other matrix the nearest of those is taken.
 Turn TurnOf(const AVStream& stream) {
   size_t size = 0;
-  const uint8_t* const data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
+  const uint8_t* const data =
+      LoadFfmpeg().av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
   if (data == nullptr || size < 9 * sizeof(int32_t)) {
     return {};
   }
@@ -65,12 +64,12 @@ cv::Mat Turned(const cv::Mat& image, const Turn& turn) {
 }
 
 struct Free {
-  void operator()(AVFormatContext* file) const { avformat_close_input(&file); }
-  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-  void operator()(AVDictionary* options) const { av_dict_free(&options); }
-  void operator()(SwsContext* converter) const { sws_freeContext(converter); }
+  void operator()(AVFormatContext* file) const { LoadFfmpeg().avformat_close_input(&file); }
+  void operator()(AVCodecContext* codec) const { LoadFfmpeg().avcodec_free_context(&codec); }
+  void operator()(AVPacket* packet) const { LoadFfmpeg().av_packet_free(&packet); }
+  void operator()(AVFrame* frame) const { LoadFfmpeg().av_frame_free(&frame); }
+  void operator()(AVDictionary* options) const { LoadFfmpeg().av_dict_free(&options); }
+  void operator()(SwsContext* converter) const { LoadFfmpeg().sws_freeContext(converter); }
 };
 template <typename Resource>
 using Owned = std::unique_ptr<Resource, Free>;
@@ -82,21 +81,22 @@ class VideoFile::Decoder {
  public:
   // Not usable if it cannot be opened.
   explicit Decoder(const std::filesystem::path& path) {
-    av_log_set_level(AV_LOG_FATAL);  // what is wrong with a file is told by errors, not on stderr
+    LoadFfmpeg().av_log_set_level(
+        AV_LOG_FATAL);  // what is wrong with a file is told by errors, not on stderr
     AVDictionary* options = nullptr;
-    av_dict_set(&options, "format_whitelist", kContainers, 0);
-    av_dict_set(&options, "protocol_whitelist", "file", 0);
+    LoadFfmpeg().av_dict_set(&options, "format_whitelist", kContainers, 0);
+    LoadFfmpeg().av_dict_set(&options, "protocol_whitelist", "file", 0);
     AVFormatContext* file = nullptr;
     // Without its protocol, a name with a colon would be taken for an address.
-    const int code =
-        avformat_open_input(&file, ("file:" + path.string()).c_str(), nullptr, &options);
+    const int code = LoadFfmpeg().avformat_open_input(&file, ("file:" + path.string()).c_str(),
+                                                      nullptr, &options);
     const Owned<AVDictionary> unused(options);
     file_.reset(file);
-    if (code < 0 || avformat_find_stream_info(file, nullptr) < 0) {
+    if (code < 0 || LoadFfmpeg().avformat_find_stream_info(file, nullptr) < 0) {
       return;
     }
     const AVCodec* coding = nullptr;
-    stream_ = av_find_best_stream(file, AVMEDIA_TYPE_VIDEO, -1, -1, &coding, 0);
+    stream_ = LoadFfmpeg().av_find_best_stream(file, AVMEDIA_TYPE_VIDEO, -1, -1, &coding, 0);
     if (stream_ >= 0 && coding != nullptr) {
       OpenCodec(*coding);
     }
@@ -111,7 +111,7 @@ class VideoFile::Decoder {
   // Goes to the next frame; false after the last one. Packets that cannot be decoded are skipped.
   bool Next() {
     for (int code = 0; code != AVERROR_EOF;) {
-      code = avcodec_receive_frame(codec_.get(), frame_.get());
+      code = LoadFfmpeg().avcodec_receive_frame(codec_.get(), frame_.get());
       if (code == 0) {
         return true;
       }
@@ -147,16 +147,16 @@ class VideoFile::Decoder {
     const int width = frame_->width;
     const int height = frame_->height;
     const auto format = static_cast<AVPixelFormat>(frame_->format);
-    converter_.reset(sws_getCachedContext(converter_.release(), width, height, format, width,
-                                          height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr,
-                                          nullptr));
-    const Owned<AVFrame> bgr(av_frame_alloc());
+    converter_.reset(LoadFfmpeg().sws_getCachedContext(converter_.release(), width, height, format,
+                                                       width, height, AV_PIX_FMT_BGR24, SWS_BICUBIC,
+                                                       nullptr, nullptr, nullptr));
+    const Owned<AVFrame> bgr(LoadFfmpeg().av_frame_alloc());
     bgr->width = width;
     bgr->height = height;
     bgr->format = AV_PIX_FMT_BGR24;
-    if (converter_ == nullptr || av_frame_get_buffer(bgr.get(), 0) < 0 ||
-        sws_scale(converter_.get(), frame_->data, frame_->linesize, 0, height, bgr->data,
-                  bgr->linesize) != height) {
+    if (converter_ == nullptr || LoadFfmpeg().av_frame_get_buffer(bgr.get(), 0) < 0 ||
+        LoadFfmpeg().sws_scale(converter_.get(), frame_->data, frame_->linesize, 0, height,
+                               bgr->data, bgr->linesize) != height) {
       return {};
     }
     const cv::Mat stored(height, width, CV_8UC3, bgr->data[0],
@@ -168,36 +168,37 @@ class VideoFile::Decoder {
   const AVStream& Stream() const { return *file_->streams[stream_]; }
 
   void OpenCodec(const AVCodec& coding) {
-    codec_.reset(avcodec_alloc_context3(&coding));
-    if (codec_ == nullptr || avcodec_parameters_to_context(codec_.get(), Stream().codecpar) < 0) {
+    codec_.reset(LoadFfmpeg().avcodec_alloc_context3(&coding));
+    if (codec_ == nullptr ||
+        LoadFfmpeg().avcodec_parameters_to_context(codec_.get(), Stream().codecpar) < 0) {
       return;
     }
     codec_->pkt_timebase = Stream().time_base;
     codec_->thread_count = 0;  // one per core
     codec_->max_pixels = kMostImagePixels;
-    is_open_ = avcodec_open2(codec_.get(), &coding, nullptr) >= 0;
+    is_open_ = LoadFfmpeg().avcodec_open2(codec_.get(), &coding, nullptr) >= 0;
   }
 
   // Gives the decoder the next packet of the stream, or tells it that there are no more.
   void SendPacket() {
-    while (av_read_frame(file_.get(), packet_.get()) >= 0) {
+    while (LoadFfmpeg().av_read_frame(file_.get(), packet_.get()) >= 0) {
       const bool is_of_stream = packet_->stream_index == stream_;
       if (is_of_stream) {
-        avcodec_send_packet(codec_.get(), packet_.get());
+        LoadFfmpeg().avcodec_send_packet(codec_.get(), packet_.get());
       }
-      av_packet_unref(packet_.get());
+      LoadFfmpeg().av_packet_unref(packet_.get());
       if (is_of_stream) {
         return;
       }
     }
-    avcodec_send_packet(codec_.get(), nullptr);
+    LoadFfmpeg().avcodec_send_packet(codec_.get(), nullptr);
     is_drained_ = true;
   }
 
   Owned<AVFormatContext> file_;
   Owned<AVCodecContext> codec_;
-  Owned<AVPacket> packet_{av_packet_alloc()};
-  Owned<AVFrame> frame_{av_frame_alloc()};
+  Owned<AVPacket> packet_{LoadFfmpeg().av_packet_alloc()};
+  Owned<AVFrame> frame_{LoadFfmpeg().av_frame_alloc()};
   Owned<SwsContext> converter_;
   int stream_ = -1;
   bool is_open_ = false;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
+
+#include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {
@@ -21,9 +23,17 @@ const cv::Scalar kPaper(255, 255, 255);
 const cv::Scalar kInk(40, 40, 40);
 const cv::Scalar kOutline(0, 140, 255);  // orange
 
+// Empty if the picture is no image.
+cv::Mat DecodeCutout(const ViewPicture& picture) {
+  try {
+    return DecodeColourImage("", picture.jpeg);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 cv::Mat DrawCutout(const ViewPicture& picture) {
-  const std::vector<uchar> bytes(picture.jpeg.begin(), picture.jpeg.end());
-  cv::Mat image = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  cv::Mat image = DecodeCutout(picture);
   if (image.empty()) {
     return image;
   }

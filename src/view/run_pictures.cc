@@ -16,7 +16,7 @@
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
 #include "sequences/frame_colour.h"
-#include "sequences/image_file.h"
+#include "sequences/jpeg_codec.h"
 #include "util/thin.h"
 
 namespace hullslam {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/crc.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
@@ -131,21 +132,26 @@ TEST(ImageFile, BrokenFilesAreReportedByName) {
   std::string flipped = EncodeImage(Ramp(CV_16UC1), ".png");
   flipped[flipped.size() / 2] = static_cast<char>(~flipped[flipped.size() / 2]);
   ExpectInputError([&] { ReadDepthImage(folder.Write("flipped.png", flipped)); },
-                   {"flipped.png", "is broken", "checksum"});
+                   {"flipped.png", "is broken"});
 }
 
 TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
   const TemporaryFolder folder;
   std::string png = EncodeImage(Ramp(CV_8UC1), ".png");
   png[16] = 0x7f;  // the highest byte of the width
+  boost::crc_32_type checksum;
+  checksum.process_bytes(png.data() + 12, 17);
+  for (size_t i = 0; i < 4; ++i) {
+    png[29 + i] = static_cast<char>(checksum.checksum() >> (24 - 8 * i));
+  }
   ExpectInputError([&] { ReadGreyImage(folder.Write("huge.png", png)); },
                    {"huge.png", "million px"});
   std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
   const size_t frame = jpeg.find("\xff\xc0");
   ASSERT_NE(frame, std::string::npos);
-  jpeg.replace(frame + 5, 4, "\xff\xff\xff\xff");
+  jpeg.replace(frame + 5, 4, "\xea\x60\xea\x60");
   ExpectInputError([&] { ReadGreyImage(folder.Write("huge.jpg", jpeg)); },
-                   {"huge.jpg", "65535x65535 px"});
+                   {"huge.jpg", "60000x60000 px"});
 }
 
 // The size of the file is checked before its content is read.
@@ -166,8 +172,9 @@ TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
   EXPECT_EQ(ReadGreyImage(folder.Write("fill.jpg", jpeg)).size(), cv::Size(64, 48));
 }
 
-// A decoder that skips unknown bytes would find a second frame header in them, with another size.
-TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
+// Bytes that the decoder skips may look like a header; the size that is checked is that of the
+// image.
+TEST(ImageFile, TheSizeOfAJpegIsTheOneThatIsDecoded) {
   const TemporaryFolder folder;
   std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
   const size_t frame = jpeg.find("\xff\xc0");
@@ -176,10 +183,7 @@ TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
   jpeg.replace(frame + 5, 4, "\x7f\xff\x7f\xff");
   jpeg.insert(frame, decoy);
   ExpectInputError([&] { ReadGreyImage(folder.Write("decoy.jpg", jpeg)); },
-                   {"decoy.jpg", "the header with the size of the image is missing"});
-  jpeg.erase(frame, decoy.size());
-  ExpectInputError([&] { ReadGreyImage(folder.Write("large.jpg", jpeg)); },
-                   {"large.jpg", "32767x32767 px"});
+                   {"decoy.jpg", "32767x32767 px"});
 }
 
 TEST(ImageFile, APngWithoutHeaderIsRefused) {
@@ -187,17 +191,7 @@ TEST(ImageFile, APngWithoutHeaderIsRefused) {
   const std::string png = EncodeImage(Ramp(CV_8UC1), ".png");
   const std::string end = png.substr(png.size() - 12);
   ExpectInputError([&] { ReadGreyImage(folder.Write("end.png", png.substr(0, 8) + end)); },
-                   {"end.png", "the header with the size of the image is missing"});
-}
-
-TEST(ImageFile, AJpegOfHigherQualityIsLargerAndMoreExact) {
-  cv::Mat noise(48, 64, CV_8UC1);
-  cv::randu(noise, 0, 255);
-  const std::string coarse = EncodeJpeg(noise, 30);
-  const std::string fine = EncodeJpeg(noise, 95);
-  EXPECT_LT(coarse.size(), fine.size());
-  EXPECT_LT(cv::norm(DecodeGreyImage("fine", fine), noise),
-            cv::norm(DecodeGreyImage("coarse", coarse), noise));
+                   {"end.png", "is broken"});
 }
 
 }  // namespace

@@ -8,12 +8,11 @@
 #include <exception>
 #include <iterator>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "hullslam/util/check.h"
+#include "sequences/png_codec.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"
@@ -26,12 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMinMaskArea = 100;  // px
-
-std::string Png(const cv::Mat& image) {
-  std::vector<uint8_t> bytes;
-  Check(cv::imencode(".png", image, bytes), "an image could not be encoded");
-  return {bytes.begin(), bytes.end()};
-}
 
 std::string MaskText(const Scene& scene, const cv::Mat& instance) {
   std::string text;
@@ -56,8 +49,8 @@ void WriteFrame(const SequencePlan& plan, const Renderer& renderer, const Sensor
       {.time = time, .readout_time = plan.readout_time, .duration = plan.exposure_time});
   const std::string stem = plan.layout.Stem(frame);
   const auto number = static_cast<uint32_t>(frame);
-  WriteNewFile(folder / "rgb" / (stem + ".png"), Png(sensor.Colour(rendered, number)));
-  WriteNewFile(folder / "depth" / (stem + ".png"), Png(sensor.Depth(rendered, number)));
+  WriteNewFile(folder / "rgb" / (stem + ".png"), EncodePng(sensor.Colour(rendered, number)));
+  WriteNewFile(folder / "depth" / (stem + ".png"), EncodePng(sensor.Depth(rendered, number)));
   WriteNewFile(folder / plan.layout.TumFolder() / "masks" / (stem + ".txt"),
                MaskText(plan.scene, rendered.instance));
 }
