@@ -57,17 +57,17 @@ std::optional<std::string> SequenceMasks::format() const {
 std::string SequenceMasks::Describe() const {
   return source_ == nullptr
              ? std::string("no masks")
-             : fmt::format(
-                   "masks: {} ({}), {} of {} frames have none{}{}", path_, source_->format(),
-                   counts_.without_masks, frames_.size(),
-                   counts_.missing == 0 ? std::string()
-                                        : fmt::format(", {} of them because they have no file or "
-                                                      "entry",
-                                                      counts_.missing),
-                   counts_.without_area == 0
-                       ? std::string()
-                       : fmt::format("; {} left out, because of no outline of 1 px^2 or more",
-                                     Counted(counts_.without_area, "instance")));
+             : fmt::format("masks: {} ({}), {} of {} frames have none{}{}", path_,
+                           source_->format(), counts_.without_masks, frames_.size(),
+                           counts_.missing == 0
+                               ? std::string()
+                               : fmt::format(", {} of them because they have no file or "
+                                             "entry",
+                                             counts_.missing),
+                           counts_.without_area == 0
+                               ? std::string()
+                               : fmt::format("; left out: {} without an outline of 1 px^2 or more",
+                                             Counted(counts_.without_area, "instance")));
 }
 
 }  // namespace hullslam
