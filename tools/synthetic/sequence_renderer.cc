@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "sequences/png_codec.h"
-#include "synthetic/hash_noise.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_files.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {
