@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of scripts/accuracy.py with small programs instead of those of HullSLAM."""
 
-import contextlib
-import io
 import json
 import pathlib
 import sys
 import tempfile
-import types
 import unittest
 from unittest import mock
 
 import fake_slam
+from in_process import run_main
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "accuracy.py"
 sys.path.insert(0, str(SCRIPT.parent))
@@ -51,15 +49,10 @@ class AccuracyTest(unittest.TestCase):
     def run_script(self, *arguments, code=0):
         """In this process, with an accepted file of its own, so that the one of this project plays
         no part."""
-        out, err = io.StringIO(), io.StringIO()
-        with mock.patch.object(accuracy, "ACCEPTED", self.dir / "docs" / "accuracy.json"), \
-                contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            try:
-                found = accuracy.main(list(map(str, self.arguments(*arguments))))
-            except SystemExit as end:  # bad usage
-                found = end.code
-        self.assertEqual(found, code, out.getvalue() + err.getvalue())
-        return types.SimpleNamespace(stdout=out.getvalue(), stderr=err.getvalue())
+        with mock.patch.object(accuracy, "ACCEPTED", self.dir / "docs" / "accuracy.json"):
+            result = run_main(accuracy.main, *self.arguments(*arguments))
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
 
     def call_main(self, *arguments, code=0):
         result = self.run_script(*arguments, code=code)

@@ -3,13 +3,17 @@
 
 import json
 import pathlib
-import subprocess
+import sys
 import tempfile
 import unittest
 
 import fake_slam
+from in_process import run_main
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "reproduce_tables.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import reproduce_tables  # noqa: E402
+
 DEFINITIONS = """
 variants:
   points: {label: points only, masks: false}
@@ -59,8 +63,7 @@ class TablesTest(unittest.TestCase):
                 *map(str, arguments)]
 
     def run_script(self, *arguments, **options):
-        return subprocess.run(self.command(*arguments, **options), capture_output=True, text=True,
-                              check=False, timeout=500)
+        return run_main(reproduce_tables.main, *self.command(*arguments, **options)[1:])
 
     def succeed(self, *arguments, **options):
         result = self.run_script(*arguments, **options)
