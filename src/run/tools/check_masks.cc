@@ -17,6 +17,7 @@
 #include "frame/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/tum_sequence.h"
+#include "masks/mask_overlay.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/input_warnings.h"
@@ -27,7 +28,6 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
-#include "run/tools/mask_overlay.h"
 #include "sequences/image_file.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/mask_overlay.h"
+#include "masks/mask_overlay.h"
 
 #include <fmt/format.h>
 
