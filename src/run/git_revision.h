@@ -5,8 +5,8 @@
 
 namespace hullslam {
 
-// The revision that this program was configured from, as `git describe` gives it; empty outside of a
-// clone.
+// The revision that this program was configured from, as `git describe` gives it; empty outside of
+// a clone.
 std::string GitRevision();
 
 }  // namespace hullslam

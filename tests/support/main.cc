@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The main function of the test programs. CTest runs many tests in one process; so that it shows that
-// one of them was skipped, the program then ends with the code that CTest gives in HULLSLAM_SKIP_CODE.
+// The main function of the test programs. CTest runs many tests in one process; so that it shows
+// that one of them was skipped, the program then ends with the code that CTest gives in
+// HULLSLAM_SKIP_CODE.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
