@@ -31,9 +31,10 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
       std::min(max_time_factor, std::exp2(evidence.fruitless_requests - patient_requests + 1));
   const bool lacks_objects =
       evidence.unknown_objects > 0 && time >= time_for_objects * std::max(1.0, time_factor);
+  const bool seeks_join = evidence.has_islands && time >= time_for_joins;
   const bool is_overdue = time >= max_time_between;
   const bool is_urgent = is_overdue || is_abrupt || is_leaving || lacks_close_points;
-  return (is_weak || lacks_objects) && (evidence.mapper_is_idle || is_urgent);
+  return (is_weak || lacks_objects || seeks_join) && (evidence.mapper_is_idle || is_urgent);
 }
 
 bool KeyframePolicy::NeedsKeyframeForObjects(KeyframeEvidence evidence) const {

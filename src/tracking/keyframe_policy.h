@@ -22,6 +22,7 @@ struct KeyframeEvidence {
       0;  // keyframes requested for objects alone since an object was last mapped
   double next_overlap = 1.0;  // share of the reference's view in the next image (NextOverlap)
   size_t keyframes = 0;
+  bool has_islands = false;  // parts of the map are not joined to one another
   // s; absent if the camera was not relocalised.
   std::optional<double> time_since_relocalisation = std::nullopt;
   bool mapper_is_idle = true;
@@ -35,6 +36,9 @@ struct KeyframePolicy {
   double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
   double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
   double time_for_objects = 1.0 / 3.0;  // s; after this time, also for objects that are not mapped
+  // s; after this time, also if there are islands, because only keyframes are compared with earlier
+  // places, and a join needs two of them that show the same one.
+  double time_for_joins = 1.0 / 3.0;
   // Some detections can never be mapped. From this number of fruitless requests on, each further
   // one doubles the time for objects, up to the largest factor.
   int patient_requests = 4;

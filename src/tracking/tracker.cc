@@ -288,6 +288,7 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
   KeyframeEvidence evidence =
       GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
+  evidence.has_islands = Islands(map).size() > 1;
   evidence.fruitless_requests = object_requests_.CountFruitless(map);
   if (relocalised_at_) {
     evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;

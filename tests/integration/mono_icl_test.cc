@@ -28,7 +28,8 @@ TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
   const ProgramResult result = ExpectMap({path_}, kMonoIclFrames);
   ExpectParts(result.output, {"y up, mirrored"});
   EXPECT_LE(Ate(), kMonoIclSmall);
-  EXPECT_EQ(Summary()["trajectory"]["pairs"], kMonoIclFrames - 1) << "the first frame has no true pose";
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kMonoIclFrames - 1)
+      << "the first frame has no true pose";
   EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kMonoIclFrames - 1U);
   const double right = Ate();
   ExpectMap({path_, "--groundtruth-y", "down"}, kMonoIclFrames);

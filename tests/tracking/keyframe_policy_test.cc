@@ -151,6 +151,18 @@ TEST(KeyframePolicy, AsksBeforeTheViewOfTheReferenceIsLeft) {
   });
 }
 
+// Only keyframes are compared with earlier places.
+TEST(KeyframePolicy, AsksOftenWhilePartsOfTheMapAreNotJoined) {
+  const auto islands = [](int frames) {
+    return With([&](auto& e) {
+      e.has_islands = true;
+      e.time_since_keyframe = Frames(frames);
+    });
+  };
+  ExpectDecisions(
+      {{"after a third of a second", islands(10), true}, {"before", islands(9), false}});
+}
+
 TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
   const auto after = [](int frames, bool is_idle) {
     return With([=](auto& e) {
