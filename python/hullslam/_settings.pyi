@@ -100,7 +100,7 @@ class _mapping:
     fixed_keyframes: int
     """largest number of fixed keyframes in local bundle adjustment; 0: all that observe its landmarks (an integer >= 0; default 0)"""
     landmark_rule: Literal["hullslam", "orb_slam2"]
-    """which pairs of keypoints without depth become landmarks: those whose expected parallax is large enough, or those whose own is, as in ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
+    """which keypoints become landmarks: all with depth and pairs whose expected parallax is large enough, or those that are near or whose own parallax is large enough, as in ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
     local_keyframes: int
     """largest number of keyframes that local bundle adjustment moves (an integer >= 2; default 20)"""
 

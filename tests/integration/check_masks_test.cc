@@ -104,20 +104,6 @@ TEST_F(CheckMasks, AppliesTheSettings) {
   EXPECT_EQ(Count(Run({"--set", "objects.detection.min_keypoints=5"}), "kept"), "3");
 }
 
-TEST_F(CheckMasks, WarnsOfAnOldNameOfASettingAndUsesIt) {
-  const ProgramResult result = Run({"--quiet", "--set", "objects.min_score=0.85"});
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.errors,
-            "warning: --set: objects.min_score is now called objects.detection.min_score\n");
-  EXPECT_EQ(Count(result, "kept"), "2");
-}
-
-TEST_F(CheckMasks, RefusesARetiredSetting) {
-  const ProgramResult result = Run({"--set", "objects.conic_lines=8"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.errors.find("objects.conic_lines is no setting any more"), std::string::npos);
-}
-
 TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
   const fs::path out = folder_.path() / "pictures";
   const ProgramResult result = Run({"--output", out, "--every", "2"});

@@ -78,7 +78,9 @@ TEST_F(QueryObjects, AClassThatOnlyTheNetworkKnowsIsThereNot) {
   EXPECT_EQ(Ask({"is there a cup on the book?"}).exit_code, 0);
   EXPECT_EQ(Ask({"gear wheel"}).exit_code, 2);
   folder_.Write("masks/classes.txt", "gear wheel\ncup\n");
-  folder_.Write("run/summary.json", R"({"provenance": {"masks": "masks"}})");
+  folder_.Write("run/summary.json",
+                R"({"trajectory": {"alignment": "se3"}, "map": {"keyframes": 1, "landmarks": 1},
+                   "provenance": {"masks": "masks"}})");
   EXPECT_EQ(Ask({"where are gear wheels"}).exit_code, 1);
   EXPECT_EQ(Ask({"is there a giraffe?"}).exit_code, 2);
 }

@@ -102,7 +102,7 @@ class RgbdTum : public ::testing::Test {
 
 TEST_F(RgbdTum, WritesAllResults) {
   const ProgramResult result = RunWell({path_});
-  ExpectParts(result.output, {"12 frames: 12 tracked, 0 lost, 0 skipped", "ATE RMSE", "keyframes",
+  ExpectParts(result.output, {"12 frames: 12 tracked, 0 lost, 0 skipped", "ATE RMSE", "keyframe",
                               "frames/s", output_.string()});
   std::vector<std::string> names;
   for (const auto& [name, bytes] : ReadFolder(output_)) {

@@ -87,8 +87,8 @@ TEST(RunSequence, OfAnUnknownDataSetIsRefused) {
   ExpectInputError([&] { OpenRunSequence({}, folder.path() / "gone", MadeCamera()); },
                    {"gone", "does not say of which data set", "repeat the run"});
   ExpectInputError(
-      [&] { OpenRunSequence({.path = {}, .dataset = "kitti"}, folder.path(), MadeCamera()); },
-      {"'kitti'", "tum, icl, euroc, bag, video, vslamlab"});
+      [&] { OpenRunSequence({.path = {}, .dataset = "kinect"}, folder.path(), MadeCamera()); },
+      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, video, vslamlab"});
 }
 
 }  // namespace
