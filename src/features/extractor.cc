@@ -51,6 +51,7 @@ class LevelExtractor {
   const ExtractedFeatures& features() const { return features_; }
 
  private:
+  void Select(const cv::Mat& image);
   void Describe(const Corner& corner, const ImagePyramid& pyramid, const cv::Mat& blurred);
 
   int level_;
@@ -61,6 +62,7 @@ class LevelExtractor {
   QuadtreeSelection selection_;
   OrbBlur blur_;
   std::vector<Corner> corners_;
+  std::vector<Corner> on_edges_;
   std::vector<Corner> selected_;
   ExtractedFeatures features_;
 };
@@ -70,18 +72,35 @@ void LevelExtractor::Extract(const ImagePyramid& pyramid) {
   features_.descriptors.clear();
   const cv::Mat& image = pyramid.level(level_);
   detector_.Detect(image, kPatchReach, corners_);
-  if (!keep_edges_) {
-    std::erase_if(corners_, [&](const Corner& corner) {
-      return IsStraightEdge(image, {corner.x, corner.y});
-    });
-  }
-  selection_.Select(corners_, image.size(), quota_, selected_);
+  Select(image);
   if (selected_.empty()) {
     return;
   }
   const cv::Mat& blurred = blur_.Blur(image);
   for (const Corner& corner : selected_) {
     Describe(corner, pyramid, blurred);
+  }
+}
+
+// Corners on straight edges are left out, unless the others are fewer than half of the features
+// that the level should have: where there is little else, they are better than nothing.
+void LevelExtractor::Select(const cv::Mat& image) {
+  if (keep_edges_) {
+    selection_.Select(corners_, image.size(), quota_, selected_);
+    return;
+  }
+  const auto firm =
+      std::stable_partition(corners_.begin(), corners_.end(), [&](const Corner& corner) {
+        return !IsStraightEdge(image, {corner.x, corner.y});
+      });
+  on_edges_.assign(firm, corners_.end());
+  corners_.erase(firm, corners_.end());
+  selection_.Select(corners_, image.size(), quota_, selected_);
+  const size_t least = quota_ / 2;
+  if (selected_.size() < least && !on_edges_.empty()) {
+    std::vector<Corner> more;
+    selection_.Select(on_edges_, image.size(), least - selected_.size(), more);
+    selected_.insert(selected_.end(), more.begin(), more.end());
   }
 }
 

@@ -2,6 +2,7 @@
 #include "mapping/keyframe_insertion.h"
 
 #include <algorithm>
+#include <array>
 
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
@@ -41,22 +42,38 @@ void AddKnownLandmarks(Map& map, KeyframeId id, const std::vector<LandmarkId>& l
   }
 }
 
+constexpr int kColumns = 4;
+constexpr int kRows = 3;
+
+// The cell of LandmarkRules in which a pixel is.
+size_t CellOf(const PinholeCamera::Bounds& bounds, const Eigen::Vector2d& pixel) {
+  const double x = (pixel.x() - bounds.min_x) / (bounds.max_x - bounds.min_x);
+  const double y = (pixel.y() - bounds.min_y) / (bounds.max_y - bounds.min_y);
+  const int column = std::clamp(static_cast<int>(x * kColumns), 0, kColumns - 1);
+  const int row = std::clamp(static_cast<int>(y * kRows), 0, kRows - 1);
+  return static_cast<size_t>(row * kColumns + column);
+}
+
 // Makes landmarks of keypoints with depth that show none yet.
 void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor, const LandmarkRules& rules,
                        std::vector<LandmarkId>& created) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(id).frame;
   const Rigid3 world_from_cam = Inverse(map.keyframes().At(id).cam_from_world);
   size_t count = 0;
+  std::array<size_t, size_t{kColumns} * kRows> in_cells{};
   for (const uint32_t keypoint : KeypointsByDepth(frame->features)) {
     const double depth = static_cast<double>(frame->features.depth[keypoint]);
-    if (depth > sensor.close_depth && count >= rules.enough_depth_landmarks) {
-      break;
+    const Eigen::Vector2d pixel = frame->features.keypoints[keypoint].undistorted.cast<double>();
+    size_t& in_cell = in_cells[CellOf(sensor.bounds, pixel)];
+    if (depth > sensor.close_depth && count >= rules.enough_in_image &&
+        in_cell >= rules.enough_in_cell) {
+      continue;
     }
     ++count;
+    ++in_cell;
     if (map.keyframes().At(id).landmarks[keypoint].IsValid()) {
       continue;
     }
-    const Eigen::Vector2d pixel = frame->features.keypoints[keypoint].undistorted.cast<double>();
     const LandmarkId landmark =
         map.AddLandmark(world_from_cam * sensor.camera.Unproject(pixel, depth), id);
     Observe(map, landmark, id, keypoint, sensor.levels);

@@ -51,15 +51,19 @@ LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor, MappingRule rule) {
   }
   // Keyframes have made landmarks of their depth already. Depth is more precise than triangulation
   // over a baseline that is shorter than that of the virtual stereo pair.
-  LandmarkRules rules{.neighbours = 10,
+  //
+  // Far landmarks are less precise, but where the camera looks through a door they are all that the
+  // next image shows. So each cell of the image gets its share of the hundred landmarks that
+  // ORB-SLAM2 wants in the whole image (the function CreateNewKeyFrame of the released
+  // Tracking.cc).
+  constexpr size_t kShareOfHundred = 9;  // 12 cells
+  LandmarkRules rules{.enough_in_cell = kShareOfHundred,
+                      .neighbours = 10,
                       .min_baseline = sensor.baseline(),
                       .min_baseline_share = 0.0,
                       .nearby_landmarks_decide = false};
   if (rule == MappingRule::kOrbSlam2) {
-    // The function CreateNewKeyFrame of the released Tracking.cc. Without it all keypoints with
-    // depth become landmarks, far ones too: their weight has the error of their depth, and where
-    // the camera looks through a door, little else is in the next image.
-    rules.enough_depth_landmarks = 100;
+    rules.enough_in_cell = 0;
   }
   return rules;
 }

@@ -41,8 +41,11 @@ struct CullingRules {
 
 // The rules by which landmarks are made from depth and from pairs of keyframes.
 struct LandmarkRules {
-  // Once a keyframe has this many landmarks, its keypoints beyond the close ones become none.
-  size_t enough_depth_landmarks = std::numeric_limits<size_t>::max();
+  // Keypoints beyond the close ones become no landmarks once the keyframe has `enough_in_image`,
+  // and the cell of the image in which they are, of 4 x 3, has `enough_in_cell`. Nearer ones come
+  // first.
+  size_t enough_in_image = 100;
+  size_t enough_in_cell = 0;
   size_t neighbours = 0;  // number of best covisible keyframes that are paired with a new one
   // Shortest baseline of a pair, m. Absent: `min_baseline_share` of the median depth of the
   // landmarks.
