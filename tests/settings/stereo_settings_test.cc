@@ -81,6 +81,9 @@ TEST_F(StereoSettings, FilesOfOrbSlam2AreRead) {
   ASSERT_NE(rectifier, nullptr);
   EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.11008, 1e-4);
   EXPECT_FALSE(rectifier->camera().IsDistorted());
+  const Eigen::Matrix3d rotation = rectifier->rectified_from_left().rotation.toRotationMatrix();
+  EXPECT_NEAR(rotation(0, 2), 0.008079580483432283, 1e-4) << "LEFT.R";
+  EXPECT_NEAR(rotation(2, 1), -0.007044357138835809, 1e-4);
 }
 
 TEST_F(StereoSettings, FilesOfOrbSlam3AreRead) {
