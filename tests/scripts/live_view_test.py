@@ -77,7 +77,7 @@ class LiveViewTest(unittest.TestCase):
         self.assertEqual(stepped["phase"], "paused")
         self.assertLessEqual(stepped["frame"], paused["frame"] + 2)
         self.assertEqual(run.control("save-map")[0], 202)
-        saved = next(live for live in frames if "keyframes is in" in live["notice"])
+        saved = next(live for live in frames if " is in " in live["notice"])
         path = pathlib.Path(saved["notice"].split(" is in ")[1])
         self.assertEqual(path, self.folder / "controlled-live.map")
         self.assertGreater(path.stat().st_size, 1000)
