@@ -30,7 +30,7 @@ constexpr std::chrono::milliseconds kFramePeriod(70);
 constexpr std::chrono::milliseconds kMapPeriod(500);
 // Making messages about the map may take this share of the time of a core.
 constexpr int kMostMapShare = 20;
-constexpr std::chrono::milliseconds kLastWait(2000);
+constexpr std::chrono::milliseconds kLastWait(5000);  // for a browser on a busy machine
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -143,13 +143,10 @@ class LiveView::Engine {
     hub_.LeaveBehind();
     while (LiveClock::now() < end) {
       hub_.GiveWhole(whole);
-      const bool is_taken = hub_.WaitUntilTaken(std::chrono::milliseconds(50));
-      if (is_taken && !hub_.HasReadersBehind()) {
+      if (hub_.WaitUntilSent(std::chrono::milliseconds(50))) {
         break;
       }
     }
-    // What was taken last is still being sent.
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
 
  private:

@@ -102,11 +102,13 @@ SharedMessage MessageHub::Take(ReaderId reader) {
   return message;
 }
 
-bool MessageHub::WaitUntilTaken(std::chrono::milliseconds longest) const {
+bool MessageHub::WaitUntilSent(std::chrono::milliseconds longest) const {
   std::unique_lock lock(mutex_);
   return taken_.wait_for(lock, longest, [this] {
     return std::all_of(readers_.begin(), readers_.end(), [](const auto& entry) {
-      return entry.second.map == nullptr && entry.second.frame == nullptr;
+      const Reader& reader = entry.second;
+      const bool has_all = !reader.is_behind && reader.map == nullptr && reader.frame == nullptr;
+      return has_all && reader.is_waiting;
     });
   });
 }

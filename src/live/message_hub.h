@@ -49,8 +49,9 @@ class MessageHub {
 
   // The next message for this reader, map before frame; null if there is none, or no such reader.
   SharedMessage Take(ReaderId reader);
-  // Waits until all messages were taken, but not longer than this.
-  bool WaitUntilTaken(std::chrono::milliseconds longest) const;
+  // Waits until all readers have the whole map, have taken all messages and have asked for the next
+  // one, which they do when the last one was sent. Waits no longer than this.
+  bool WaitUntilSent(std::chrono::milliseconds longest) const;
 
  private:
   struct Reader {

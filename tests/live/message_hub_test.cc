@@ -83,18 +83,20 @@ TEST(MessageHub, ReadersCanLeaveAndBeLeftBehind) {
   hub.RemoveReader(reader);
   EXPECT_EQ(hub.reader_count(), 0u);
   EXPECT_EQ(TakeText(hub, reader), "-");
-  EXPECT_TRUE(hub.WaitUntilTaken(0ms));
+  EXPECT_TRUE(hub.WaitUntilSent(0ms));
 }
 
-TEST(MessageHub, NotifiesAndWaitsUntilAllIsTaken) {
+TEST(MessageHub, NotifiesAndWaitsUntilAllIsSent) {
   std::atomic<int> notified = 0;
   MessageHub hub([&] { ++notified; });
   const auto reader = hub.AddReader();
   hub.GiveWhole(Text("whole"));
   EXPECT_EQ(notified, 1);
-  EXPECT_FALSE(hub.WaitUntilTaken(1ms));
+  EXPECT_FALSE(hub.WaitUntilSent(1ms));
+  hub.Take(reader);
+  EXPECT_FALSE(hub.WaitUntilSent(1ms)) << "it is still being sent";
   std::thread taker([&] { hub.Take(reader); });
-  EXPECT_TRUE(hub.WaitUntilTaken(10s));
+  EXPECT_TRUE(hub.WaitUntilSent(10s));
   taker.join();
 }
 
