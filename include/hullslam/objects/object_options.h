@@ -54,7 +54,7 @@ struct StartOptions {
   ObjectStart method = ObjectStart::kFitted;
   int min_views = 3;                         // keyframes
   // Degrees between viewing rays, with depth. Depth tells where an object is, and max_elongation
-  // guards its extent along the view, so the views need only differ: at 3 degrees 78 of the 115
+  // guards its extent along the view, so the views need only differ: at 3 degrees 78 of 115
   // visible objects of eight sequences were mapped, at 1 degree 101, and one of them twice at 0.
   double min_parallax = 1.0;
   double min_parallax_without_depth = 15.0;  // degrees
