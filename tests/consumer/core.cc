@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program of a user, which links the installed hullslam::core and uses it. It calls functions of
-// several modules, so that CMake must also find the packages that these modules link.
+// The program of a user, which links the installed hullslam::core and uses it. It calls functions
+// of several modules, so that CMake must also find the packages that these modules link.
 #include "core.h"
 
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_box_bounds.h"
+#include "costs/comparison/quadric_box_bounds.h"
 
 #include <gtest/gtest.h>
 

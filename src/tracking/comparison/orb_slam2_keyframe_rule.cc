@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/orb_slam2_keyframe_rule.h"
+#include "tracking/comparison/orb_slam2_keyframe_rule.h"
 
 namespace hullslam {
 namespace {

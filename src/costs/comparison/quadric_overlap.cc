@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_overlap.h"
+#include "costs/comparison/quadric_overlap.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "costs/quadric_algebraic_plane.h"
+#include "costs/comparison/quadric_algebraic_plane.h"
 #include "costs/quadric_in_camera.h"
 #include "costs/residual_kind.h"
 #include "hullslam/camera/pinhole.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_filtered_point.h"
+#include "costs/comparison/quadric_filtered_point.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_algebraic_point.h"
+#include "costs/comparison/quadric_algebraic_point.h"
 
 #include <Eigen/LU>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_relative_plane.h"
+#include "costs/comparison/quadric_relative_plane.h"
 
 namespace hullslam {
 

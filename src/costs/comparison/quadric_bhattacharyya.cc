@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_bhattacharyya.h"
+#include "costs/comparison/quadric_bhattacharyya.h"
 
-#include "costs/quadric_distribution.h"
+#include "costs/comparison/quadric_distribution.h"
 
 namespace hullslam {
 namespace {

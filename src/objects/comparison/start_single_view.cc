@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/start_single_view.h"
+#include "objects/comparison/start_single_view.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/association_measure.h"
+#include "objects/comparison/association_measure.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
-#include "costs/quadric_distribution.h"
+#include "costs/comparison/quadric_distribution.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
 

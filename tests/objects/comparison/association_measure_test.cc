@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/association_measure.h"
+#include "objects/comparison/association_measure.h"
 
 #include <gtest/gtest.h>
 

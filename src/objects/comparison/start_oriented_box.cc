@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/start_oriented_box.h"
+#include "objects/comparison/start_oriented_box.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/quadric_filtered_point.h"
+#include "costs/comparison/quadric_filtered_point.h"
 
 #include <Eigen/LU>
 #include <cmath>
 
-#include "costs/quadric_algebraic_point.h"
+#include "costs/comparison/quadric_algebraic_point.h"
 #include "util/thin.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/start_box_planes.h"
+#include "objects/comparison/start_box_planes.h"
 
 #include <gtest/gtest.h>
 
