@@ -14,7 +14,7 @@ namespace hullslam {
 // sense in a map of unknown scale. Each struct binds those of its fields that are settings, in the
 // scope of its own path; the others are fixed.
 
-// How a detection and an object are compared (src/objects/association_measure.h).
+// How a detection and an object are compared (src/objects/comparison/association_measure.h).
 enum class AssociationMeasure { kCombined, kClassOverlap, kWasserstein };
 
 // How the first quadric of an object is made (src/objects/start_method.h).
