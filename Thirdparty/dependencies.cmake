@@ -3,6 +3,9 @@
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d calib3d)
+if(HULLSLAM_WITH_SEGMENTATION)
+  find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d calib3d dnn)
+endif()
 find_package(PNG 1.6 REQUIRED)
 find_package(JPEG 62 REQUIRED)  # libjpeg-turbo 2.1, which has the interface of libjpeg 6b
 find_package(Ceres 2.1 REQUIRED)
