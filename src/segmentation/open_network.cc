@@ -10,11 +10,8 @@
 #include <vector>
 
 #include "files/data_path.h"
-#include "hullslam/util/error.h"
 
 namespace hullslam {
-
-#ifdef HULLSLAM_NETWORK_BUILT
 
 namespace {
 
@@ -59,15 +56,5 @@ std::unique_ptr<Network> OpenNetwork(std::string_view bytes) {
   static const auto make = LoadFunction();
   return std::unique_ptr<Network>(make(bytes.data(), bytes.size()));
 }
-
-#else
-
-std::unique_ptr<Network> OpenNetwork(std::string_view /*bytes*/) {
-  throw InputError(
-      "this HullSLAM was built without segmentation, expected a build with "
-      "HULLSLAM_WITH_SEGMENTATION=ON");
-}
-
-#endif
 
 }  // namespace hullslam
