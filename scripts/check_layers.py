@@ -33,7 +33,7 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16, "view": 16,
-    "exports": 17, "live": 17,
+    "exports": 17, "live": 17, "segmentation": 17,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
     "run": 18,
 }
@@ -93,10 +93,10 @@ def is_private(included, quoted, path, root):
 
 
 def links_of(arguments):
-    """The words after LINKS in the arguments of hullslam_module(), up to PUBLIC or PRIVATE."""
+    """The words after LINKS in the arguments of hullslam_module(), up to the next keyword."""
     links, key = set(), ""
     for word in arguments.split():
-        if word in ("LINKS", "PUBLIC", "PRIVATE"):
+        if word in ("LINKS", "PUBLIC", "PRIVATE") or word.startswith("WITH_"):
             key = word
         elif key == "LINKS":
             links.add(word)

@@ -63,6 +63,7 @@ class CheckLayersTest(unittest.TestCase):
         for call in ("hullslam_module(map)", "hullslam_module(map LINKS util)",
                      "hullslam_module(map LINKS util PUBLIC geometry)",
                      "hullslam_module(map LINKS util PRIVATE geometry)",
+                     "hullslam_module(map LINKS util WITH_SCENE geometry)",
                      "hullslam_module(map LINKS util  # geometry\n)",
                      "# hullslam_module(map LINKS geometry)\nhullslam_module(map LINKS util)"):
             with self.subTest(call):
