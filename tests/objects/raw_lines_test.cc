@@ -32,8 +32,8 @@ TEST(RawLines, DistancesAreThoseOfTheRawImage) {
     const Detection detection = SquareAt(camera, center);
     const auto lines = ScaleToRaw(camera, detection, detection.lines);
     ASSERT_EQ(lines.size(), 1u);
-    // A point a fifth of a raw px to the right of the middle of the side.
-    const Eigen::Vector2d beyond = camera.Undistort(center + Eigen::Vector2d(9.2, 0.0));
+    // A point a fifth of a raw px to the right of an end of the side.
+    const Eigen::Vector2d beyond = camera.Undistort(center + Eigen::Vector2d(9.2, -9.0));
     EXPECT_NEAR(lines[0].line.SignedDistance(beyond), 0.2, 0.02) << center.transpose();
     EXPECT_NEAR(lines[0].line.SignedDistance(detection.hull[1]), 0.0, 1e-9);
   }
