@@ -171,7 +171,13 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
-  WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
+  WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) {
+    std::vector<InstanceMask> found = masks.Read(frame);
+    if (sequence.fit_mask != nullptr) {
+      std::ranges::for_each(found, sequence.fit_mask);
+    }
+    return found;
+  });
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
 }
@@ -184,6 +190,9 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
+  }
+  if (!settings.camera_note.empty()) {
+    Print("camera: {}\n", settings.camera_note);
   }
   if (settings.preset) {
     Print("{}\n", DescribePreset(settings));
@@ -208,7 +217,9 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
   const SequenceMasks masks(
-      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
+      {arguments.masks, arguments.masks_format,
+       sequence.read_width > 0 ? sequence.read_width : options.camera.width,
+       sequence.read_height > 0 ? sequence.read_height : options.camera.height},
       MaskFrames(sequence));
   CatchInterrupts();
   CheckSavedFiles(arguments);

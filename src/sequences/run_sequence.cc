@@ -15,6 +15,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
+#include "sequences/resized_images.h"
 #include "settings/stereo_settings.h"
 #include "util/shown_text.h"
 
@@ -109,7 +110,10 @@ ImageSequence OpenRunSequence(const SequenceOfRun& run, const fs::path& path,
   std::string known;
   for (const NamedDataset& dataset : kDatasets) {
     if (run.dataset == dataset.name) {
-      return dataset.open({run, path, camera, use_depth});
+      const Reopening opening{run, path, camera, use_depth};
+      ImageSequence sequence = dataset.open(opening);
+      ResizeImages(opening.Choice("resized_from"), camera, sequence);
+      return sequence;
     }
     known += (known.empty() ? "" : ", ") + std::string(dataset.name);
   }

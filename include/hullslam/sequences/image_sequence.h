@@ -67,6 +67,9 @@ struct ImageSequence {
   ColourLoader load_colour = nullptr;
   // Moves a mask of the image as read into the image that `load` gives. Null if they are the same.
   std::function<void(InstanceMask&)> fit_mask = nullptr;
+  // The size of the images as read, px, if `load` resizes them; else 0.
+  int read_width = 0;
+  int read_height = 0;
 };
 
 // The true trajectory, from the field that is set; absent without ground truth. The file may have
