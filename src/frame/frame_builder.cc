@@ -77,7 +77,8 @@ std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera&
 
 // The pixels of the masks and those about them.
 cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
-  constexpr double kAbout = 32.0;  // px; so far it is tested whether something hides an object
+  // px. The depths at 8 px beyond a line tell whether something hides an object; blocks are larger.
+  constexpr double kAbout = 12.0;
   const cv::Rect image({0, 0}, size);
   Eigen::AlignedBox2d box;
   for (const InstanceMask& mask : masks) {
