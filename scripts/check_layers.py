@@ -34,7 +34,7 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16, "view": 16,
-    "exports": 17, "live": 17,
+    "exports": 17, "live": 17, "segmentation": 17,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
     "run": 18,
 }

@@ -138,6 +138,27 @@ class Masks:
         (points, 2) of raw pixels.
         """
 
+class Segmenter:
+    """A network for instance segmentation (YOLOv8-seg, YOLO11-seg, YOLOv5-seg in ONNX)
+    that makes the masks of images. docs/segmentation.md tells how to get one.
+    """
+    def __init__(self, network: _Path, *, min_score: float = 0.25, classes: Sequence[str] = ...,
+                 names: _Path | None = None, size: int = 0, threads: int = 0,
+                 boxes: bool = False) -> None:
+        """min_score: least score of an instance. classes: only these; empty for all.
+        names: a file with the name of one class per line, or None for those in the file
+        of the network. size: longer side of the image that the network sees, px; 0 for
+        that of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a
+        network that finds no masks. Raises InputError for a file that is no such network.
+        """
+    def segment(self, image: _Image) -> Masks:
+        """The masks of an image, best score first. image: uint8, (height, width) or
+        (height, width, 3 or 4) with blue first.
+        """
+    @property
+    def class_names(self) -> list[str]:
+        """The names of the classes by their numbers."""
+
 class SequenceFrame:
     """One decoded frame of a sequence."""
     @property

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "bags/protobuf_reader.h"
 #include "files/byte_reader.h"
+#include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -138,6 +138,12 @@ ExtractedFeatures Join(const std::vector<LevelExtractor>& levels) {
   return all;
 }
 
+void CheckImage(const cv::Mat& grey) {
+  Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
+  Check(std::min(grey.cols, grey.rows) >= FeatureOptions::kSmallestSide,
+        "the image is smaller than 64 x 64 px");
+}
+
 }  // namespace
 
 struct FeatureExtractor::Impl {
@@ -170,14 +176,31 @@ ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey) {
 }
 
 ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey, TaskRunner& runner) {
-  Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
-  Check(std::min(grey.cols, grey.rows) >= FeatureOptions::kSmallestSide,
-        "the image is smaller than 64 x 64 px");
+  CheckImage(grey);
   impl_->pyramid.Build(grey);
   // The largest level comes first, so that all threads end at about the same time.
   runner.Run(impl_->extractors.size(),
              [this](size_t l) { impl_->extractors[l].Extract(impl_->pyramid); });
   return Join(impl_->extractors);
+}
+
+std::array<ExtractedFeatures, 2> FeatureExtractor::ExtractPair(
+    const std::array<FeatureExtractor*, 2>& extractors, const std::array<cv::Mat, 2>& images,
+    TaskRunner& runner) {
+  for (const cv::Mat& image : images) {
+    CheckImage(image);
+  }
+  runner.Run(2, [&](size_t i) { extractors[i]->impl_->pyramid.Build(images[i]); });
+  const std::array<size_t, 2> levels{extractors[0]->impl_->extractors.size(),
+                                     extractors[1]->impl_->extractors.size()};
+  runner.Run(2 * std::max(levels[0], levels[1]), [&](size_t task) {
+    const size_t i = task % 2;
+    if (const size_t l = task / 2; l < levels[i]) {
+      Impl& impl = *extractors[i]->impl_;
+      impl.extractors[l].Extract(impl.pyramid);
+    }
+  });
+  return {Join(extractors[0]->impl_->extractors), Join(extractors[1]->impl_->extractors)};
 }
 
 }  // namespace hullslam

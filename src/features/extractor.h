@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
@@ -35,6 +36,11 @@ class FeatureExtractor {
   ExtractedFeatures Extract(const cv::Mat& grey);
   // The same features, with one task per level of the pyramid.
   ExtractedFeatures Extract(const cv::Mat& grey, TaskRunner& runner);
+  // What Extract() gives for the image of each of two extractors, with all their tasks together, so
+  // that two threads are busy with both images until the end.
+  static std::array<ExtractedFeatures, 2> ExtractPair(
+      const std::array<FeatureExtractor*, 2>& extractors, const std::array<cv::Mat, 2>& images,
+      TaskRunner& runner);
 
  private:
   struct Impl;

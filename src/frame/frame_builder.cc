@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -66,6 +67,34 @@ std::vector<float> SampleDepths(std::span<const RawKeypoint> keypoints, const cv
   return depths;
 }
 
+std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera& camera) {
+  for (float& value : disparities) {
+    value = value > 0.0F ? static_cast<float>(camera.bf / static_cast<double>(value)) : 0.0F;
+  }
+  return disparities;
+}
+
+// The pixels of the masks and those about them.
+cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
+  constexpr double kAbout = 32.0;  // px; so far it is tested whether something hides an object
+  const cv::Rect image({0, 0}, size);
+  Eigen::AlignedBox2d box;
+  for (const InstanceMask& mask : masks) {
+    for (const auto& outline : mask.outlines) {
+      std::ranges::for_each(outline, [&](const Eigen::Vector2d& point) { box.extend(point); });
+    }
+  }
+  if (box.isEmpty()) {
+    return {};
+  }
+  const auto pixel = [](double value) { return static_cast<int>(std::clamp(value, -1e6, 1e6)); };
+  const Eigen::Vector2d first = box.min().array() - kAbout;
+  const Eigen::Vector2d last = box.max().array() + kAbout;
+  return cv::Rect(cv::Point(pixel(first.x()), pixel(first.y())),
+                  cv::Point(pixel(last.x()) + 1, pixel(last.y()) + 1)) &
+         image;
+}
+
 // Adds the undistorted keypoints and their columns in the right image. The depths are added before.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
                   TaskRunner& runner, FrameFeatures& features) {
@@ -100,6 +129,7 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
 
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
   features.keep_edges = features.keep_edges || !sensor.IsMonocular();
+  features.subpixel = features.subpixel || sensor.kind == SensorKind::kStereo;
   return features;
 }
 
@@ -143,10 +173,8 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   if (detector_) {
-    // The keypoints on an object are too few to show its surface.
-    const bool needs_depth = stereo_ && !image.masks.empty();
     const cv::Mat depth =
-        needs_depth ? CoarseDepth(image.grey, image.right, sensor_.camera) : image.depth;
+        stereo_ ? DepthOfMasks(image, built.frame->features, runner) : image.depth;
     detector_->AddDetections(image.masks, depth, keypoints, runner, built);
   }
   built.milliseconds =
@@ -154,9 +182,26 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   return built;
 }
 
+// The keypoints on an object are too few to show its surface.
+cv::Mat FrameBuilder::DepthOfMasks(const ImageInput& image, const FrameFeatures& features,
+                                   TaskRunner& runner) const {
+  const cv::Rect region = RegionOf(image.masks, image.grey.size());
+  if (region.empty()) {
+    return {};
+  }
+  std::vector<float> disparities;
+  disparities.reserve(features.depth.size());
+  for (const float depth : features.depth) {
+    disparities.push_back(depth > 0.0F ? static_cast<float>(sensor_.camera.bf) / depth : 0.0F);
+  }
+  return CoarseDepth(image.grey, image.right, sensor_.camera, {region, disparities}, runner);
+}
+
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
-  ExtractedFeatures extracted = extractor_.Extract(image.grey, runner);
+  ExtractedFeatures extracted = stereo_
+                                    ? stereo_->Extract(extractor_, image.grey, image.right, runner)
+                                    : extractor_.Extract(image.grey, runner);
   if (remove_dynamic_) {
     const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
     if (!mask.empty()) {
@@ -164,7 +209,8 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
     }
   }
   features.depth = stereo_
-                       ? stereo_->FindDepths(extracted, extractor_.pyramid(), image.right, runner)
+                       ? DepthsOf(stereo_->FindDisparities(extracted, extractor_.pyramid(), runner),
+                                  sensor_.camera)
                        : SampleDepths(extracted.keypoints, image.depth, depth_.units_per_metre);
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);

@@ -46,6 +46,9 @@ class FrameBuilder {
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);
+  // A depth image of a stereo camera, only where the masks are.
+  cv::Mat DepthOfMasks(const ImageInput& image, const FrameFeatures& features,
+                       TaskRunner& runner) const;
 
   const Sensor& sensor_;
   DepthOptions depth_;

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/stereo_features.h"
 
+#include <array>
+#include <utility>
+
 namespace hullslam {
 
 StereoFeatures::StereoFeatures(const FeatureOptions& features, const PinholeCamera& camera)
-    : extractor_(features), matcher_(extractor_.levels(), camera.fx), bf_(camera.bf) {}
+    : extractor_(features), matcher_(extractor_.levels(), camera.fx) {}
 
-std::vector<float> StereoFeatures::FindDepths(const ExtractedFeatures& left,
-                                              const ImagePyramid& left_pyramid,
-                                              const cv::Mat& right, TaskRunner& runner) {
-  const ExtractedFeatures others = extractor_.Extract(right, runner);
-  std::vector<float> depths =
-      matcher_.Match({left, left_pyramid}, {others, extractor_.pyramid()}, runner);
-  for (float& depth : depths) {
-    depth = depth > 0.0F ? static_cast<float>(bf_ / static_cast<double>(depth)) : 0.0F;
-  }
-  return depths;
+ExtractedFeatures StereoFeatures::Extract(FeatureExtractor& left_extractor, const cv::Mat& left,
+                                          const cv::Mat& right, TaskRunner& runner) {
+  std::array<ExtractedFeatures, 2> both =
+      FeatureExtractor::ExtractPair({&left_extractor, &extractor_}, {left, right}, runner);
+  right_ = std::move(both[1]);
+  return std::move(both[0]);
+}
+
+std::vector<float> StereoFeatures::FindDisparities(const ExtractedFeatures& left,
+                                                   const ImagePyramid& left_pyramid,
+                                                   TaskRunner& runner) {
+  return matcher_.Match({left, left_pyramid}, {right_, extractor_.pyramid()}, runner);
 }
 
 }  // namespace hullslam

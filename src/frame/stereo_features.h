@@ -11,22 +11,25 @@
 
 namespace hullslam {
 
-// Finds the depths of the keypoints of a left image in the right one. Keeps its buffers from pair
-// to pair.
+// Finds the keypoints of a left image in the right one. Keeps its buffers from pair to pair.
 class StereoFeatures {
  public:
   // `camera` is that of the rectified images. Points nearer than the baseline are not found.
   StereoFeatures(const FeatureOptions& features, const PinholeCamera& camera);
 
-  // One depth per left keypoint, m; 0 where it is unknown. `right` (CV_8UC1) has the size of the
-  // left image.
-  std::vector<float> FindDepths(const ExtractedFeatures& left, const ImagePyramid& left_pyramid,
-                                const cv::Mat& right, TaskRunner& runner);
+  // Extracts the features of the left image with its extractor, and beside them those of the right
+  // one (CV_8UC1), which has the size of the left one.
+  ExtractedFeatures Extract(FeatureExtractor& left_extractor, const cv::Mat& left,
+                            const cv::Mat& right, TaskRunner& runner);
+  // The disparities of keypoints of the left image of the last call of Extract, one each, px; 0
+  // where none was found. Other keypoints may have been taken out.
+  std::vector<float> FindDisparities(const ExtractedFeatures& left,
+                                     const ImagePyramid& left_pyramid, TaskRunner& runner);
 
  private:
   FeatureExtractor extractor_;
   StereoMatcher matcher_;
-  double bf_;
+  ExtractedFeatures right_;
 };
 
 }  // namespace hullslam

@@ -22,15 +22,19 @@ constexpr double kOutlier = 2.1;      // times the median: 1.5 sigma, with 1.4 m
 constexpr double kLeastMedian = 1.0;  // grey levels; images without noise differ by roundings
 constexpr int kSide = 2 * kHalfPatch + 1;
 
+constexpr int kShifts = 2 * kReach + 1;
+
+// The pixels of a patch, row by row, less their mean, so that images of different brightness can be
+// compared.
 using Patch = std::array<float, size_t{kSide} * kSide>;
 
-// The patch about a pixel, less its mean, so that images of different brightness can be compared.
-// Nothing if it does not lie inside the image.
-std::optional<Patch> CutPatch(const cv::Mat& image, int x, int y) {
-  if (x < kHalfPatch || y < kHalfPatch || x + kHalfPatch >= image.cols ||
-      y + kHalfPatch >= image.rows) {
-    return std::nullopt;
-  }
+bool IsInside(const cv::Mat& image, int x, int y) {
+  return x >= kHalfPatch && y >= kHalfPatch && x + kHalfPatch < image.cols &&
+         y + kHalfPatch < image.rows;
+}
+
+// The patch about a pixel that IsInside.
+Patch CutPatch(const cv::Mat& image, int x, int y) {
   Patch patch;
   float sum = 0.0F;
   size_t i = 0;
@@ -48,13 +52,72 @@ std::optional<Patch> CutPatch(const cv::Mat& image, int x, int y) {
   return patch;
 }
 
-float MeanDifference(const Patch& a, const Patch& b) {
-  float sum = 0.0F;
-  for (size_t i = 0; i < a.size(); ++i) {
-    sum += std::abs(a[i] - b[i]);
+// One number per shift of the patch. The last ones are not used; they let a compiler work on eight
+// at a time.
+using PerShift = std::array<float, 16>;
+static_assert(kShifts <= PerShift().size());
+
+// The pixels that the shifted patches cover, with columns to spare for the numbers that are not
+// used.
+class Strip {
+ public:
+  static constexpr size_t kWidth = static_cast<size_t>(kSide) - 1 + PerShift().size();
+
+  // Beyond the sides of the image the pixels are 0. The rows must lie in it.
+  Strip(const cv::Mat& image, int x, int y) {
+    const int left = x - kHalfPatch - kReach;
+    const int first = std::max(0, -left);
+    const int last = std::min(static_cast<int>(kWidth), image.cols - left);
+    for (int row = 0; row < kSide; ++row) {
+      const uint8_t* const pixels = image.ptr<uint8_t>(y - kHalfPatch + row);
+      for (int column = first; column < last; ++column) {
+        pixels_[static_cast<size_t>(row) * kWidth + static_cast<size_t>(column)] =
+            static_cast<float>(pixels[left + column]);
+      }
+    }
   }
-  return sum / static_cast<float>(a.size());
-}
+
+  // The mean absolute difference of the patch from each of those in the strip, less their means.
+  PerShift Differences(const Patch& patch) const {
+    const PerShift means = Means();
+    PerShift sums{};
+    ForEachPixel([&](size_t i, const float* pixels) {
+      for (size_t shift = 0; shift < sums.size(); ++shift) {
+        sums[shift] += std::abs(patch[i] - (pixels[shift] - means[shift]));
+      }
+    });
+    for (float& sum : sums) {
+      sum /= static_cast<float>(patch.size());
+    }
+    return sums;
+  }
+
+ private:
+  // Calls visit(i, pixels) for each pixel i of a patch; pixels[k] is the one of the k-th shift.
+  template <typename Visit>
+  void ForEachPixel(const Visit& visit) const {
+    for (size_t row = 0; row < size_t{kSide}; ++row) {
+      for (size_t column = 0; column < size_t{kSide}; ++column) {
+        visit(row * kSide + column, &pixels_[row * kWidth + column]);
+      }
+    }
+  }
+
+  PerShift Means() const {
+    PerShift sums{};
+    ForEachPixel([&](size_t /*i*/, const float* pixels) {
+      for (size_t shift = 0; shift < sums.size(); ++shift) {
+        sums[shift] += pixels[shift];
+      }
+    });
+    for (float& sum : sums) {
+      sum /= static_cast<float>(kSide * kSide);
+    }
+    return sums;
+  }
+
+  std::array<float, size_t{kSide} * kWidth> pixels_{};
+};
 
 struct Fit {
   float column = 0.0F;  // px at the level of the patch
@@ -62,17 +125,17 @@ struct Fit {
 };
 
 // The column at which the patch fits best, about `column`. Nothing if that is the last one that was
-// tried, because the best one may lie beyond.
+// tried, because the best one may lie beyond. The row must have room for a patch.
 std::optional<Fit> FitPatch(const Patch& patch, const cv::Mat& image, int column, int row) {
-  std::array<float, 2 * kReach + 1> differences;
-  for (int shift = -kReach; shift <= kReach; ++shift) {
-    const std::optional<Patch> other = CutPatch(image, column + shift, row);
-    differences[static_cast<size_t>(shift + kReach)] =
-        other ? MeanDifference(patch, *other) : std::numeric_limits<float>::infinity();
+  PerShift differences = Strip(image, column, row).Differences(patch);
+  for (int shift = 0; shift < kShifts; ++shift) {
+    if (!IsInside(image, column - kReach + shift, row)) {
+      differences[static_cast<size_t>(shift)] = std::numeric_limits<float>::infinity();
+    }
   }
-  const auto best = std::min_element(differences.begin(), differences.end());
+  const auto best = std::min_element(differences.begin(), differences.begin() + kShifts);
   const auto at = static_cast<int>(best - differences.begin());
-  if (at == 0 || at == 2 * kReach || !std::isfinite(*(best - 1)) || !std::isfinite(*(best + 1))) {
+  if (at == 0 || at == kShifts - 1 || !std::isfinite(*(best - 1)) || !std::isfinite(*(best + 1))) {
     return std::nullopt;
   }
   const float before = *(best - 1);
@@ -139,12 +202,13 @@ StereoMatcher::Found StereoMatcher::MatchOne(const StereoImage& left, const Ster
   const Eigen::Vector2f other = right.pyramid.FromLevelZero(best->raw, seen.level);
   const int column = static_cast<int>(std::lround(centre.x()));
   const int line = static_cast<int>(std::lround(centre.y()));
-  const std::optional<Patch> patch = CutPatch(left.pyramid.level(seen.level), column, line);
-  if (!patch) {
+  const cv::Mat& image = left.pyramid.level(seen.level);
+  if (!IsInside(image, column, line)) {
     return {};
   }
-  const std::optional<Fit> fit = FitPatch(*patch, right.pyramid.level(seen.level),
-                                          static_cast<int>(std::lround(other.x())), line);
+  const std::optional<Fit> fit =
+      FitPatch(CutPatch(image, column, line), right.pyramid.level(seen.level),
+               static_cast<int>(std::lround(other.x())), line);
   if (!fit) {
     return {};
   }

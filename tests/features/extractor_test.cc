@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -118,6 +119,23 @@ TEST(FeatureExtractor, FindsFeaturesOnAStraightEdgeOnlyWhereOthersAreFew) {
   for (const RawKeypoint& keypoint : found) {
     EXPECT_NEAR(keypoint.raw.x(), 61.0f, 3.0f);
   }
+}
+
+TEST(FeatureExtractor, APairHasTheFeaturesOfItsImages) {
+  const std::array<cv::Mat, 2> images{MakeCornerImage(), MakeCornerImage(640, 480, 8)};
+  FeatureOptions few;
+  few.level_count = 3;
+  FeatureExtractor first{FeatureOptions()};
+  FeatureExtractor second(few);
+  SerialRunner runner;
+  const auto pair = FeatureExtractor::ExtractPair({&first, &second}, images, runner);
+  const ExtractedFeatures alone = FeatureExtractor{FeatureOptions()}.Extract(images[0]);
+  const ExtractedFeatures other = FeatureExtractor(few).Extract(images[1]);
+  ASSERT_GT(other.descriptors.size(), 100u);
+  EXPECT_EQ(pair[0].descriptors, alone.descriptors);
+  EXPECT_EQ(pair[1].descriptors, other.descriptors);
+  EXPECT_THROW(FeatureExtractor::ExtractPair({&first, &second}, {images[0], cv::Mat()}, runner),
+               CheckError);
 }
 
 TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {

@@ -129,6 +129,40 @@ TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
   EXPECT_EQ(count(sensor_), kept);
 }
 
+// A whole pixel of an upper level is several pixels of the image, which is what limits the rotation
+// of a far view.
+TEST_F(FrameBuilderTest, PositionsOfAStereoCameraAreFinerThanAPixel) {
+  Sensor stereo = sensor_;
+  stereo.kind = SensorKind::kStereo;
+  stereo.camera = {.fx = 260.0,
+                   .fy = 260.0,
+                   .cx = 159.5,
+                   .cy = 119.5,
+                   .width = kWidth,
+                   .height = kHeight,
+                   .bf = 30.0};
+  ImageInput pair = MakeImage();
+  pair.depth.release();
+  constexpr int kDisparity = 15;
+  pair.right = cv::Mat(pair.grey.size(), CV_8UC1, cv::Scalar(90));
+  pair.grey.colRange(kDisparity, kWidth).copyTo(pair.right.colRange(0, kWidth - kDisparity));
+  FeatureOptions options = FewFeatures();
+  options.level_count = 1;
+  const auto frame = FrameBuilder(stereo, DepthOptions(), options).Build(pair, runner_).frame;
+  size_t between = 0;
+  size_t at_two = 0;
+  size_t known = 0;
+  for (size_t i = 0; i < frame->features.size(); ++i) {
+    const float x = frame->features.keypoints[i].undistorted.x();
+    between += std::abs(x - std::round(x)) > 0.05F ? 1 : 0;
+    known += frame->features.depth[i] > 0.0F ? 1 : 0;
+    at_two += std::abs(frame->features.depth[i] - 2.0F) < 0.02F ? 1 : 0;
+  }
+  EXPECT_GT(between, frame->features.size() / 2);
+  EXPECT_GT(known, frame->features.size() / 4);
+  EXPECT_GT(at_two, known * 9 / 10);
+}
+
 TEST_F(FrameBuilderTest, HasOneWordPerKeypointWithAVocabulary) {
   EXPECT_TRUE(Build(MakeImage())->words.empty());
   const auto vocabulary = SharedVocabulary();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bags/protobuf_reader.h"
+#include "files/protobuf_reader.h"
 
 #include <gtest/gtest.h>
 
