@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a sequence of any kind is opened with.
+// The arguments with which a sequence of any kind is opened.
 struct Reopening {
   const SequenceOfRun& run;
   const fs::path& path;
