@@ -226,7 +226,7 @@ class _objects_start:
     method: Literal["fitted", "oriented_box", "box_planes", "ray_sphere", "single_view"]
     """how the first quadric of an object is made (docs/objects.md) (one of: fitted, oriented_box, box_planes, ray_sphere, single_view; default fitted)"""
     min_parallax: float
-    """least angle between views that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 3)"""
+    """least angle between views that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 1)"""
     min_parallax_without_depth: float
     """least angle between views that an object without depth needs to be mapped, degrees (a number from 0 to 180; default 15)"""
     min_views: int

@@ -12,6 +12,7 @@
 
 #include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
+#include "frame/keypoint_grid.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -76,7 +77,8 @@ std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera&
 
 // The pixels of the masks and those about them.
 cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
-  constexpr double kAbout = 32.0;  // px; so far it is tested whether something hides an object
+  // px. The depths at 8 px beyond a line tell whether something hides an object; blocks are larger.
+  constexpr double kAbout = 12.0;
   const cv::Rect image({0, 0}, size);
   Eigen::AlignedBox2d box;
   for (const InstanceMask& mask : masks) {
@@ -109,7 +111,8 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
           camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
       features.keypoints[i] = {
           .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
-      features.right_u[i] = VirtualRight(undistorted.x(), features.depth[i], camera.bf);
+      features.right_u[i] = VirtualRight(static_cast<float>(camera.FarRight(undistorted.x())),
+                                         features.depth[i], camera.bf);
     }
   });
 }
@@ -127,9 +130,22 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
   return words;
 }
 
+// The pixels beyond the largest angle of a fisheye lens.
+cv::Mat UnusedPixels(const PinholeCamera& camera) {
+  cv::Mat unused(camera.height, camera.width, CV_8UC1);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      unused.at<unsigned char>(y, x) = camera.SeesRaw({x, y}) ? 0 : 255;
+    }
+  }
+  return unused;
+}
+
+// A pixel of a fisheye image is a large angle, so rounding to whole pixels would cost precision.
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
   features.keep_edges = features.keep_edges || !sensor.IsMonocular();
-  features.subpixel = features.subpixel || sensor.kind == SensorKind::kStereo;
+  features.subpixel =
+      features.subpixel || sensor.kind == SensorKind::kStereo || sensor.camera.IsFisheye();
   return features;
 }
 
@@ -153,6 +169,9 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
       remove_dynamic_(remove_dynamic) {
+  if (sensor.camera.IsFisheye()) {
+    unused_ = UnusedPixels(sensor.camera);
+  }
   if (sensor.kind == SensorKind::kStereo) {
     stereo_.emplace(features, sensor.camera);
   }
@@ -216,6 +235,9 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
   ExtractedFeatures extracted = stereo_
                                     ? stereo_->Extract(extractor_, image.grey, image.right, runner)
                                     : extractor_.Extract(image.grey, runner);
+  if (!unused_.empty()) {
+    RemoveMasked(unused_, extracted.keypoints, extracted.descriptors);
+  }
   if (remove_dynamic_) {
     const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
     if (!mask.empty()) {
@@ -228,10 +250,7 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
                        : SampleDepths(extracted.keypoints, image.depth, depth_.units_per_metre);
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
-  const PinholeCamera::Bounds& bounds = sensor_.bounds;
-  features.grid =
-      FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-                  Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera, sensor_.bounds);
   return std::move(extracted.keypoints);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -64,6 +65,7 @@ class FrameBuilder {
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
   bool remove_dynamic_;
+  cv::Mat unused_;  // the pixels that are not used; empty if all are
 };
 
 }  // namespace hullslam

@@ -110,7 +110,9 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
 SequenceMasks OpenRunMasks(const RunArguments& arguments, const ImageSequence& sequence,
                            const PinholeCamera& camera) {
   if (arguments.segment.empty()) {
-    return SequenceMasks({arguments.masks, arguments.masks_format, camera.width, camera.height},
+    return SequenceMasks({arguments.masks, arguments.masks_format,
+                          sequence.read_width > 0 ? sequence.read_width : camera.width,
+                          sequence.read_height > 0 ? sequence.read_height : camera.height},
                          MaskFrames(sequence));
   }
   // In real time a second thread of the network would only take time from tracking.
@@ -207,7 +209,13 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
   if (masks.network() == nullptr) {
-    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
+    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) {
+      std::vector<InstanceMask> found = masks.Read(frame);
+      if (sequence.fit_mask != nullptr) {
+        std::ranges::for_each(found, sequence.fit_mask);
+      }
+      return found;
+    });
   }
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
@@ -221,6 +229,9 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
+  }
+  if (!settings.camera_note.empty()) {
+    Print("camera: {}\n", settings.camera_note);
   }
   if (settings.preset) {
     Print("{}\n", DescribePreset(settings));

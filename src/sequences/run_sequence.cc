@@ -15,6 +15,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
+#include "sequences/resized_images.h"
 #include "settings/stereo_settings.h"
 #include "util/shown_text.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a sequence of any kind is opened with.
+// The arguments with which a sequence of any kind is opened.
 struct Reopening {
   const SequenceOfRun& run;
   const fs::path& path;
@@ -53,6 +54,12 @@ ImageSequence OpenEurocStereo(const Reopening& opening) {
 
 ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
 
+// Null without a file.
+std::shared_ptr<const StereoRectifier> RectifierOf(const std::string& calibration) {
+  return calibration.empty() ? nullptr
+                             : MakeRectifier(calibration, ReadSettings(calibration).camera);
+}
+
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");
   const std::string rate = opening.Choice("frames_per_second");
@@ -60,9 +67,7 @@ ImageSequence OpenPairs(const Reopening& opening) {
   if (!rate.empty()) {
     options.frames_per_second = std::strtod(rate.c_str(), nullptr);
   }
-  if (!calibration.empty()) {
-    options.rectifier = MakeRectifier(calibration, ReadSettings(calibration).camera);
-  }
+  options.rectifier = RectifierOf(calibration);
   return OpenStereoFolder(opening.path, options);
 }
 
@@ -78,6 +83,18 @@ ImageSequence OpenBag(const Reopening& opening) {
       .images;
 }
 
+ImageSequence OpenBagStereo(const Reopening& opening) {
+  const std::string calibration = opening.Choice("calibration");
+  const BagSequenceOptions options = {
+      .image_topic = opening.Choice("image_topic"),
+      .info_topic = opening.Choice("info_topic"),
+      .right_topic = opening.Choice("right_topic"),
+      .right_info_topic = opening.Choice("right_info_topic"),
+      .need_camera = !opening.Choice("info_topic").empty(),
+      .use_recording_times = opening.Choice("times") == "recording"};
+  return OpenBagPairs(opening.path, options, RectifierOf(calibration)).images;
+}
+
 ImageSequence OpenVideo(const Reopening& opening) { return OpenImageStream(opening.path).images; }
 
 ImageSequence OpenVslamlab(const Reopening& opening) {
@@ -87,20 +104,31 @@ ImageSequence OpenVslamlab(const Reopening& opening) {
       .images;
 }
 
+ImageSequence OpenVslamlabStereo(const Reopening& opening) {
+  return OpenVslamlabPairs(
+             opening.path, opening.path / opening.Choice("rgb_csv"),
+             {opening.Choice("image_name"), opening.Choice("right_name")},
+             ReadVslamlabPair(opening.Choice("calibration"),
+                              {opening.Choice("image_name"), opening.Choice("right_name")}))
+      .images;
+}
+
 struct NamedDataset {
   const char* name;  // ImageSequence::dataset
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
-                                                    {"icl", OpenIcl},
-                                                    {"euroc", OpenEuroc},
-                                                    {"euroc_stereo", OpenEurocStereo},
-                                                    {"kitti", OpenKitti},
-                                                    {"stereo_folder", OpenPairs},
-                                                    {"bag", OpenBag},
-                                                    {"video", OpenVideo},
-                                                    {"vslamlab", OpenVslamlab}}};
+constexpr std::array<NamedDataset, 11> kDatasets = {{{"tum", OpenTum},
+                                                     {"icl", OpenIcl},
+                                                     {"euroc", OpenEuroc},
+                                                     {"euroc_stereo", OpenEurocStereo},
+                                                     {"kitti", OpenKitti},
+                                                     {"stereo_folder", OpenPairs},
+                                                     {"bag", OpenBag},
+                                                     {"bag_stereo", OpenBagStereo},
+                                                     {"video", OpenVideo},
+                                                     {"vslamlab", OpenVslamlab},
+                                                     {"vslamlab_stereo", OpenVslamlabStereo}}};
 
 }  // namespace
 
@@ -109,7 +137,10 @@ ImageSequence OpenRunSequence(const SequenceOfRun& run, const fs::path& path,
   std::string known;
   for (const NamedDataset& dataset : kDatasets) {
     if (run.dataset == dataset.name) {
-      return dataset.open({run, path, camera, use_depth});
+      const Reopening opening{run, path, camera, use_depth};
+      ImageSequence sequence = dataset.open(opening);
+      ResizeImages(opening.Choice("resized_from"), camera, sequence);
+      return sequence;
     }
     known += (known.empty() ? "" : ", ") + std::string(dataset.name);
   }

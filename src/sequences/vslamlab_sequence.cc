@@ -4,17 +4,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "files/plausible.h"
 #include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "sequences/stereo_loading.h"
+#include "settings/rotation_matrix.h"
+#include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
@@ -38,25 +43,11 @@ YamlMap FindCamera(const fs::path& file, const std::string& name) {
                                ShowText(name), fmt::join(names, ", ")));
 }
 
-void ReadLens(const YamlMap& entry, PinholeCamera& camera) {
-  const std::string model =
-      entry.Has("distortion_type") ? entry.Text("distortion_type") : entry.Text("cam_model");
-  const bool has_k3 = model == "radtan5";
-  if (model == "pinhole") {
-    return;
+void ReadLensOf(const YamlMap& entry, PinholeCamera& camera) {
+  const char* const key = entry.Has("distortion_type") ? "distortion_type" : "cam_model";
+  if (entry.Text(key) != "pinhole") {
+    ReadLens(entry, key, "distortion_coefficients", camera);
   }
-  if (model != "radtan4" && !has_k3) {
-    entry.Fail("cam_model", fmt::format("is '{}', expected pinhole, radtan4 or radtan5; HullSLAM "
-                                        "has no other model",
-                                        ShowText(model)));
-  }
-  const std::vector<double> lens = entry.Numbers("distortion_coefficients", has_k3 ? 5 : 4,
-                                                 has_k3 ? "k1 k2 p1 p2 k3" : "k1 k2 p1 p2");
-  camera.k1 = lens[0];
-  camera.k2 = lens[1];
-  camera.p1 = lens[2];
-  camera.p2 = lens[3];
-  camera.k3 = has_k3 ? lens[4] : 0.0;
 }
 
 VslamlabCamera ReadEntry(const YamlMap& entry) {
@@ -72,13 +63,26 @@ VslamlabCamera ReadEntry(const YamlMap& entry) {
   camera.cy = center[1];
   camera.width = entry.Pixels("image_dimension", size[0]);
   camera.height = entry.Pixels("image_dimension", size[1]);
-  ReadLens(entry, camera);
+  ReadLensOf(entry, camera);
   result.calibration.frames_per_second = entry.Number("fps");
   if (entry.Has("depth_name")) {
     result.depth_name = entry.Text("depth_name");
     result.depth_factor = entry.Number("depth_factor");
   }
   return result;
+}
+
+// The pose of a camera on the body. VSLAM-LAB has renamed its key.
+Rigid3 BodyFromCamera(const YamlMap& entry) {
+  const char* const key = entry.Has("T_SC") ? "T_SC" : "T_BS";
+  const std::vector<double> numbers = entry.Numbers(key, 16, "a 4x4 matrix by rows");
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+  const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());
+  if (!rotation) {
+    entry.Fail(key, "is no rotation and translation");
+  }
+  return {*rotation, matrix.topRightCorner<3, 1>()};
 }
 
 // ---- rgb.csv
@@ -150,6 +154,34 @@ VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name)
   const VslamlabCamera camera = ReadEntry(FindCamera(file, name));
   MakeSettings(camera.calibration, file.string());  // checks the numbers
   return camera;
+}
+
+VslamlabPair ReadVslamlabPair(const fs::path& file, const VslamlabPairNames& names) {
+  const YamlMap left = FindCamera(file, names[0]);
+  const YamlMap right = FindCamera(file, names[1]);
+  VslamlabPair pair{nullptr, ReadVslamlabCamera(file, names[0]).calibration};
+  const StereoCalibration calibration{
+      .left = pair.calibration.camera,
+      .right = ReadVslamlabCamera(file, names[1]).calibration.camera,
+      .right_from_left = Inverse(BodyFromCamera(right)) * BodyFromCamera(left)};
+  pair.rectifier = std::make_shared<const StereoRectifier>(
+      calibration,
+      fmt::format("{}: {} and {}", file.string(), ShowText(names[0]), ShowText(names[1])));
+  pair.calibration.camera = pair.rectifier->camera();
+  return pair;
+}
+
+VslamlabSequence OpenVslamlabPairs(const fs::path& folder, const fs::path& csv,
+                                   const VslamlabPairNames& names, const VslamlabPair& pair) {
+  VslamlabSequence sequence = OpenVslamlabSequence(folder, csv, names[0], names[1]);
+  for (FramePaths& frame : sequence.images.frames) {
+    frame.right = std::exchange(frame.depth, {});
+  }
+  sequence.images.dataset = "vslamlab_stereo";
+  sequence.images.choices.erase("depth_name");
+  sequence.images.choices["right_name"] = names[1];
+  LoadPairs(pair.rectifier, sequence.images);
+  return sequence;
 }
 
 VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& csv,

@@ -212,21 +212,26 @@ TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
                                     Image(0, 10)};
   };
   const BagSequenceOptions mono = {.use_depth = false};
-  ExpectRefusal(
-      with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {1, 2, 3, 4})),
-      {"/cam/camera_info", "'equidistant' with 4", "plumb_bob", "--settings"}, mono);
-  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
-                                           {0, 0, 0, 0, 0, 1, 0, 0})),
-                {"'rational_polynomial' with 8 coefficients, which HullSLAM cannot use yet"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "omni", {1, 2, 3, 4})),
+                {"/cam/camera_info", "'omni' with 4", "plumb_bob", "--settings"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {1, 2})),
+                {"'equidistant' with 2 coefficients, expected 4 coefficients"}, mono);
   ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {}, 0.0)),
                 {"not calibrated"}, mono);
   const BagSequence bag =
       Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
-                                      {0.1, 0.2, 0.3, 0.4, 0.5, 0, 0, 0})),
+                                      {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8})),
            mono);
+  EXPECT_EQ(bag.camera->camera.k4, 0.6);
+  EXPECT_EQ(bag.camera->camera.k6, 0.8);
   EXPECT_EQ(bag.camera->camera.k2, 0.2);
   EXPECT_EQ(bag.camera->camera.p1, 0.3);
   EXPECT_EQ(bag.camera->camera.k3, 0.5);
+  const BagSequence fisheye = Open(
+      with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {0.1, 0.2, 0.3, 0.4})),
+      mono);
+  EXPECT_TRUE(fisheye.camera->camera.IsFisheye());
+  EXPECT_EQ(fisheye.camera->camera.k4, 0.4);
   // Models that HullSLAM does not have are those of a pinhole if there is no distortion.
   const BagSequence pinhole =
       Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "Inverse Brown Conrady")), mono);
@@ -243,6 +248,69 @@ TEST_F(BagSequenceTest, ACutRecordingIsUsedUpToTheCut) {
   EXPECT_EQ(bag.images.frames.size(), 1u);
   ASSERT_EQ(bag.warnings.size(), 1u);
   EXPECT_NE(bag.warnings[0].find("cut off"), std::string::npos);
+}
+
+class BagPairsTest : public BagSequenceTest {
+ protected:
+  static MadeMessage Half(const std::string& side, int64_t stamp, int grey) {
+    MadeMessage message = Image(stamp, grey);
+    message.topic = "/" + side + "/image";
+    return message;
+  }
+  static MadeMessage HalfCamera(const std::string& side, double baseline) {
+    return {
+        "/" + side + "/camera_info", "sensor_msgs/CameraInfo", kStart,
+        MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {0, 0, 0, 0, 0}, 300.0, baseline)};
+  }
+  // Pairs 50 ms apart. The right image of the third one is missing.
+  static std::vector<MadeMessage> UsualPairs(double baseline = 0.1) {
+    std::vector<MadeMessage> messages = {HalfCamera("left", 0.0), HalfCamera("right", baseline)};
+    for (int i = 0; i < 4; ++i) {
+      messages.push_back(Half("left", 50'000'000 * i, 10 + i));
+      if (i != 2) {
+        messages.push_back(Half("right", 50'000'000 * i + 1'000'000, 20 + i));
+      }
+    }
+    return messages;
+  }
+  BagPairs OpenPairs(const std::vector<MadeMessage>& messages,
+                     const BagSequenceOptions& options = {}) const {
+    return OpenBagPairs(folder_.Write("a.mcap", MadeMcap(messages, "zstd")), options);
+  }
+};
+
+TEST_F(BagPairsTest, TwoTopicsArePairedByTheirStamps) {
+  const BagPairs bag = OpenPairs(UsualPairs());
+  ASSERT_EQ(bag.images.frames.size(), 3u);
+  ASSERT_TRUE(bag.calibration.has_value());
+  EXPECT_NEAR(bag.calibration->camera.bf, 30.0, 1e-9);
+  EXPECT_NEAR(bag.calibration->frames_per_second, 20.0, 1e-3);
+  const ImageInput pair = bag.images.load(bag.images.frames[2], bag.calibration->camera);
+  EXPECT_EQ(pair.grey.at<uint8_t>(9, 9), 13);
+  EXPECT_EQ(pair.right.at<uint8_t>(9, 9), 23);
+  EXPECT_TRUE(pair.depth.empty());
+  ASSERT_EQ(bag.warnings.size(), 1u);
+  EXPECT_NE(bag.warnings[0].find("1 of 4 images of /left/image"), std::string::npos);
+  EXPECT_EQ(bag.images.choices.at("right_topic"), "/right/image");
+}
+
+TEST_F(BagPairsTest, OtherSettingsNeedNoCamera) {
+  std::vector<MadeMessage> messages = UsualPairs();
+  messages.erase(messages.begin(), messages.begin() + 2);
+  EXPECT_EQ(OpenPairs(messages, {.need_camera = false}).images.frames.size(), 3u);
+  ExpectInputError([&] { OpenPairs(messages); }, {"a.mcap", "CameraInfo", "--settings"});
+}
+
+TEST_F(BagPairsTest, CamerasThatAreNoPairAreRefused) {
+  ExpectInputError([&] { OpenPairs(UsualPairs(0.0)); }, {"a.mcap: the baseline is 0 m"});
+  ExpectInputError([&] { OpenPairs(UsualPairs(-0.1)); }, {"left and right are swapped"});
+  std::vector<MadeMessage> late = UsualPairs();
+  for (MadeMessage& message : late) {
+    if (message.topic == "/right/image") {
+      message = Half("right", static_cast<int64_t>(message.time - kStart) + 20'000'000, 1);
+    }
+  }
+  ExpectInputError([&] { OpenPairs(late); }, {"a.mcap: 0 of 4 images of /left/image"});
 }
 
 }  // namespace

@@ -123,15 +123,15 @@ TEST_F(SettingsOrbSlam3, RectifiedImagesHaveNoDistortion) {
 }
 
 TEST_F(SettingsOrbSlam3, SettingsThatCannotBeTranslatedAreNamed) {
-  ExpectError("Camera.type", "Camera.type: \"KannalaBrandt8\"",
-              {"camera.yaml:3: Camera.type is 'KannalaBrandt8'", "\"PinHole\" or \"Rectified\"",
+  ExpectError("Camera.type", "Camera.type: \"Omni\"",
+              {"camera.yaml:3: Camera.type is 'Omni'", "\"PinHole\" or \"Rectified\"",
                "no other camera model"});
   ExpectError("File.version", "File.version: \"2.0\"",
               {"camera.yaml:2: File.version is '2.0'", "\"1.0\""});
   ExpectError("", "System.thFarPoints: 20.0", {"System.thFarPoints", "far points"});
   ExpectError("", "System.LoadAtlasFromFile: \"a\"", {"System.LoadAtlasFromFile", "maps"});
-  ExpectError("Camera.newWidth", "Camera.newWidth: 640",
-              {"camera.yaml:17: Camera.newWidth is '640'", "Camera.width, '1280'", "resize"});
+  ExpectError("Camera.newWidth", "Camera.newWidth: 8",
+              {"camera.yaml:17: Camera.newWidth is '8'", "from 16 to 16384"});
 }
 
 TEST_F(SettingsOrbSlam3, BadValuesAreReportedByTheNameInTheFile) {

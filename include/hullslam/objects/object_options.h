@@ -52,7 +52,7 @@ struct AssociationOptions {
 // The conditions for computing the shape of a candidate, and its start.
 struct StartOptions {
   ObjectStart method = ObjectStart::kFitted;
-  int min_views = 3;                         // keyframes
+  int min_views = 3;  // keyframes
   // Degrees between viewing rays, with depth. Depth tells where an object is, and max_elongation
   // guards its extent along the view, so the views need only differ: at 3 degrees 78 of 115
   // visible objects of eight sequences were mapped, at 1 degree 101, and one of them twice at 0.
