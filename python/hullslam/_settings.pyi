@@ -31,6 +31,12 @@ class _Camera:
     """radial distortion, fourth order (a number of any size; default 0)"""
     k3: float
     """radial distortion, sixth order (a number of any size; default 0)"""
+    k4: float
+    """radial divisor; the fourth of a fisheye (a number of any size; default 0)"""
+    k5: float
+    """radial divisor (a number of any size; default 0)"""
+    k6: float
+    """radial divisor (a number of any size; default 0)"""
     p1: float
     """tangential distortion (a number of any size; default 0)"""
     p2: float
@@ -39,6 +45,8 @@ class _Camera:
     """rolling shutter: an image is exposed row after row or column after column (one of: rows, columns; default rows)"""
     readout_time: float
     """rolling shutter: time from the top row of an image to the bottom row (columns: from left to right), s; negative: the other way round; 0: all at once (a number from -0.1 to 0.1; default 0)"""
+    type: Literal["PinHole", "KannalaBrandt8"]
+    """lens (one of: PinHole, KannalaBrandt8; default PinHole)"""
     width: int
     """width of the images, px (an integer from 16 to 16384; default 640)"""
 
