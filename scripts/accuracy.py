@@ -133,12 +133,19 @@ def compare(old, new, out):
     return comparison.is_worse()
 
 
-def accept(report, absent, out):
+def accept(report, absent, out, is_part):
+    """With --only, the other cases keep their figures."""
     if absent:
         raise InputError(f"--accept: {', '.join(absent)} is absent, and the accepted figures must have "
                          "all cases")
     ACCEPTED.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / "accuracy.json", ACCEPTED)
+    if is_part and ACCEPTED.is_file():
+        known, cases = read_report(ACCEPTED), {run["case"] for run in report["runs"].values()}
+        kept = {name: run for name, run in known["runs"].items() if run.get("case") not in cases}
+        write(ACCEPTED, json_text({**known, "git": sorted({*known["git"], *report["git"]}),
+                                   "runs": kept | report["runs"]}))
+    else:
+        shutil.copyfile(out / "accuracy.json", ACCEPTED)
     print(f"{ACCEPTED}: {len(report['runs'])} runs of {build_name(report)} are accepted")
 
 
@@ -165,7 +172,7 @@ def gate(arguments):
     if old is None:
         print(f"note: {ACCEPTED} does not exist, so nothing is compared", file=sys.stderr)
     if arguments.accept:
-        accept(report, absent, out)
+        accept(report, absent, out, arguments.only is not None)
     return int(is_worse and not arguments.accept)
 
 
@@ -183,7 +190,8 @@ def parse_arguments(words):
     parser.add_argument("--compare", type=pathlib.Path, metavar="FILE",
                         help="compare with this accuracy.json (default: docs/results/accuracy.json)")
     parser.add_argument("--accept", action="store_true",
-                        help="the figures become docs/results/accuracy.json; exit code 0")
+                        help="the figures become docs/results/accuracy.json, with --only those of "
+                             "these cases; exit code 0")
     parser.add_argument("--only", metavar="CASE,...", help="only some of the cases")
     parser.add_argument("--quick", action="store_true", help="one run of each case instead of several")
     parser.add_argument("--so-far", action="store_true",
@@ -207,9 +215,8 @@ def parse_arguments(words):
         parser.error(f"--jobs is {arguments.jobs}, expected 1 or more")
     if not 0.0 < arguments.timeout < 1e9:
         parser.error("--timeout must be a number of seconds")
-    if arguments.accept and (arguments.only or arguments.quick or arguments.list
-                             or arguments.so_far):
-        parser.error("--accept needs all runs, so it excludes --only, --quick, --so-far and --list")
+    if arguments.accept and (arguments.quick or arguments.list or arguments.so_far):
+        parser.error("--accept needs all runs of its cases, so it excludes --quick, --so-far and --list")
     return arguments
 
 

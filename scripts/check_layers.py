@@ -10,10 +10,11 @@
    not need them.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import check_program
 
 LEVELS = {
     "util": 0,
@@ -164,16 +165,5 @@ def check_tree(root):
             for line in check_file(path, module, public, root, links)]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top folder of the repository (default: the one of this script)")
-    faults = check_tree(parser.parse_args().root)
-    for line in faults:
-        print(line, file=sys.stderr)
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_program(__doc__, check_tree))

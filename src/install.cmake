@@ -51,7 +51,7 @@ endif()
 
 hullslam_install_library(hullslam_io hullslamIoTargets library dev)
 hullslam_install_library(hullslam hullslamTargets library dev)
-hullslam_install_headers(dev ${HULLSLAM_IO_MODULES})
+hullslam_install_headers(dev ${HULLSLAM_IO_MODULES} ${HULLSLAM_OTHER_MODULES})
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 # The library looks for the settings and the vocabulary itself.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${HULLSLAM_INSTALL_CONFIGDIR}

@@ -10,7 +10,7 @@ class HULLSLAM_baseline(BaselineVSLAMLAB):
     def __init__(self):
         super().__init__("hullslam", "HullSLAM", {"verbose": 0, "mode": "mono", "preset": "hullslam", "seed": 0})
         self.color = "green"
-        self.modes = ["mono", "rgbd"]
+        self.modes = ["mono", "rgbd", "stereo"]
         self.cam_models = ["pinhole", "radtan4", "radtan5"]
         self.command_style = "cpp"
 

@@ -372,6 +372,16 @@ class System:
         timestamp: s, larger than that of the frame before.
         Raises InputError for anything else; a refused frame changes nothing.
         """
+    def await_masks(self, is_on: bool) -> None:
+        """From now on, frames that are tracked without masks await those of add_masks(): a
+        keyframe of such a frame says nothing about objects until then. reset() switches
+        this off.
+        """
+    def add_masks(self, frame: int, masks: Masks) -> bool:
+        """Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at
+        most 2 s of time stamps later. Only keyframes keep them. Returns False for a frame
+        that awaits no masks (any more).
+        """
     def finish(self) -> None:
         """Waits until all keyframes are in the map, adjusts the whole map, and computes the
         poses of all frames again. Ctrl+C ends it early.

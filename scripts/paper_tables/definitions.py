@@ -10,7 +10,8 @@ import yaml
 from paper_tables.figures import FIGURES
 from support import InputError, one_line, read_text
 
-MODES = ("rgbd", "mono")
+MODES = ("rgbd", "mono")  # of tables
+ALL_MODES = (*MODES, "stereo")  # of cases of the gate
 NAME = r"[A-Za-z0-9][\w.+-]*"  # also the name of a folder
 SOURCES = ("recorded", "suite", "rendering")
 
@@ -22,7 +23,7 @@ class Variant:
     arguments: tuple = ()
     masks: bool = True
     objects: bool = True  # whether it maps objects
-    modes: tuple = MODES
+    modes: tuple = ALL_MODES
     same_as: str = None  # the variant whose runs it shares without a rolling shutter
 
 
@@ -41,7 +42,7 @@ class Degradation:
     arguments: tuple = ()  # of the program
     options: tuple = ()  # of degrade_sequence.py
     only_with_objects: bool = False
-    modes: tuple = MODES
+    modes: tuple = ALL_MODES
     unchanged: str = None  # the level of runs without it, if it is one of a scale
 
 
@@ -233,7 +234,7 @@ def read_table(name, node, variants, degradations, paper_sequences):
 def read_case(name, node, variants, degradations, renderings):
     found = node.read({"recorded": Node.text, "suite": Node.text, "rendering": one_of(renderings),
                        "seeds": Node.whole_numbers, "first": Node.whole_numbers, "last": Node.count,
-                       "degradation": one_of(degradations), "modes": some_of(MODES),
+                       "degradation": one_of(degradations), "modes": some_of(ALL_MODES),
                        "variants": some_of(variants)})
     sources = [source for source in SOURCES if source in found]
     if len(sources) != 1:

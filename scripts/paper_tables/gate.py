@@ -52,22 +52,22 @@ class Measure:
 
 
 def both(value):
-    return {"rgbd": value, "mono": value}
+    return {"rgbd": value, "mono": value, "stereo": value}
 
 
 # One keyframe more or less changes the error by some 5 %, loses a frame or two of 100, and shifts an
 # object by a few percent of its size. Monocular errors vary more: between f922b75 and 87e868e, single
 # runs of cases that are the same differ by at most 5 % with depth and 25 % without.
 MEASURES = {
-    "ate": Measure("ATE, mm", {"rgbd": "ate_se3", "mono": "ate_sim3"}, True, True, math.log(1.05),
-                   {"rgbd": math.log(1.5), "mono": math.log(2.0)}, 1e3, 2),
+    "ate": Measure("ATE, mm", {"rgbd": "ate_se3", "mono": "ate_sim3", "stereo": "ate_se3"}, True, True, math.log(1.05),
+                   {"rgbd": math.log(1.5), "mono": math.log(2.0), "stereo": math.log(1.5)}, 1e3, 2),
     # Lost is better than wrong, so a frame that was wrong and is lost now is no frame worse.
     "unknown": Measure("no right pose, %", both("unknown"), False, True, 2.0, both(10.0)),
     "wrong": Measure("wrong pose, %", both("wrong"), False, True, 2.0, both(5.0)),
     "objects": Measure("objects", both("objects"), False, False, 1.0, both(math.inf)),
     "found": Measure("found, %", both("found"), False, False, 0.05, both(math.inf), 1e2),
     "siou": Measure("SIoU", both("siou"), False, False, 0.02, both(math.inf), 1.0, 3),
-    "scale": Measure("scale error, %", {"rgbd": "scale_error"}, False, True, 0.001, both(math.inf), 1e2,
+    "scale": Measure("scale error, %", {"rgbd": "scale_error", "stereo": "scale_error"}, False, True, 0.001, both(math.inf), 1e2,
                      2),
 }
 KEPT = ("ate_se3", "ate_sim3", "keyframes_ate_sim3", "lost", "frames", "keyframes", "loops",
@@ -100,7 +100,7 @@ def figures_of_poses(folder, mode, frames):
     is_right = errors <= WRONG * path
     scale = align(source[is_right], target[is_right], True)[0] if is_right.sum() > 2 else None
     return {"wrong": 100.0 * float((~is_right).sum()) / frames,
-            "scale_error": abs(math.log(scale)) if mode == "rgbd" and scale else None}
+            "scale_error": abs(math.log(scale)) if mode != "mono" and scale else None}
 
 
 def run_report(name, run, result, out, summary):

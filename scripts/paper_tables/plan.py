@@ -21,7 +21,10 @@ from paper_tables.definitions import MODES
 from paper_tables.engine import DIGITS, RESULT_VERSION
 from support import SCRIPTS, InputError, hash_file, read_text
 
-ESTIMATORS = ("rgbd_tum", "mono_tum", "rgbd_icl", "mono_icl")
+# The estimators of the modes and data sets.
+ESTIMATORS = {("rgbd", "tum"): "rgbd_tum", ("mono", "tum"): "mono_tum", ("rgbd", "icl"): "rgbd_icl",
+              ("mono", "icl"): "mono_icl", ("stereo", "tum"): "stereo_folder",
+              ("stereo", "euroc"): "stereo_euroc", ("stereo", "kitti"): "stereo_kitti"}
 
 
 def digest(*parts):
@@ -63,7 +66,7 @@ class Tools:
         self.hashes = {}
 
     def path(self, name):
-        path = (self.programs if name in ESTIMATORS else self.others) / name
+        path = (self.programs if name in ESTIMATORS.values() else self.others) / name
         if not path.is_file():
             raise InputError(f"{path}: no such program; build it (cmake --build --preset release) "
                              "or give its folder by --programs")
@@ -140,6 +143,7 @@ class Planner:
             variant = self.request.definitions.variants[variant.same_as]
         if mode not in sequence.modes:
             return None, ("the sequence has no depth" if mode == "rgbd" else
+                          "the sequence has no pairs" if mode == "stereo" else
                           "a quick run has this sequence only with depth")
         if mode not in variant.modes:
             return None, f"{variant.label} does not run in this mode"
@@ -172,7 +176,7 @@ class Planner:
         arguments = [*variant.arguments, *extra, *part, "--seed", str(seed)]
         if variant.masks:
             inputs.append(sequence.masks_fingerprint)
-        program = f"{mode}_{sequence.dataset}"
+        program = ESTIMATORS[mode, sequence.dataset]
         name = "/".join((sequence.name + (suffix if is_other_sequence else ""), mode,
                          variant.name + ("" if is_other_sequence else suffix), f"seed-{seed}"))
         self.runs[name] = {
@@ -181,7 +185,7 @@ class Planner:
             "frames": min(sequence.frames, last - seed + 1 if last else sequence.frames),
             "command": [str(self.tools.path(program)), folder, *settings, *arguments,
                         *(("--masks", masks) if variant.masks else ()), "--quiet"],
-            "groundtruth": f"{folder}/groundtruth.txt" if sequence.dataset == "tum" else None,
+            "groundtruth": f"{folder}/groundtruth.txt" if sequence.dataset != "icl" else None,
             "objects": sequence.path("objects", seed),
             "fingerprint": digest(RESULT_VERSION, program, arguments, variant.masks, inputs,
                                   *(self.tools.hash(self.tools.path(tool))

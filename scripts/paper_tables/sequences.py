@@ -14,6 +14,7 @@ from tum_and_icl import read_rows
 
 PNG_END, JPEG_END = b"IEND\xaeB`\x82", b"\xff\xd9"
 IMAGES = {".png", ".jpg", ".jpeg"}
+PAIRS = ("euroc", "kitti")  # data sets of stereo cameras
 PREFIX = "rgbd_dataset_"  # of the folders of TUM RGB-D
 FRAMES = 300  # of a sequence of the suite, unless --frames says otherwise
 LISTING_FRAMES = "2"  # enough to learn which sequences there are
@@ -23,7 +24,7 @@ LISTING_FRAMES = "2"  # enough to learn which sequences there are
 class Sequence:
     """A sequence. The paths of a rendered one are relative to the output folder and contain {seed}."""
     name: str
-    dataset: str  # tum or icl
+    dataset: str  # tum, icl, euroc or kitti
     paper: str = None  # the sequence of the paper that it is, or whose part it plays
     folder: str = None
     masks: str = None
@@ -59,12 +60,15 @@ def paper_name(name, paper_sequences):
 
 
 def find_dataset(folder):
-    """tum or icl by the files in the folder; None if it has no sequence of either.
+    """The data set by the files in the folder: tum, icl, or pairs of euroc or kitti; None for others.
 
     Only ICL-NUIM has associations.txt or numbered images without rgb.txt.
     """
     if (folder / "rgb.txt").is_file():
         return "tum"
+    for name, mark in (("euroc", "mav0/cam1"), ("kitti", "image_1")):
+        if (folder / mark).is_dir():
+            return name
     if (folder / "associations.txt").is_file() or any(folder.glob("scene_00_*.png")):
         return "icl"
     return "tum" if any(path.suffix.lower() in IMAGES for path in folder.glob("rgb/*")) else None
@@ -73,7 +77,7 @@ def find_dataset(folder):
 def listed_images(folder, dataset):
     """(list, path) of each image that a list of the sequence names; without lists (folder, path)."""
     found, rows = [], {}
-    for name in ("rgb.txt", "depth.txt") if dataset == "tum" else ("associations.txt",):
+    for name in ("rgb.txt", "depth.txt") if dataset == "tum" else ("associations.txt",) if dataset == "icl" else ():
         if (folder / name).is_file():
             rows[folder / name] = [words for _, words in read_rows(folder / name)]
     for path, lines in rows.items():
@@ -81,7 +85,9 @@ def listed_images(folder, dataset):
             raise InputError(f"{path}: expected lines: index depth index rgb")
         found += [(path, folder / words[i]) for words in lines
                   for i in ((0,) if dataset == "tum" else (0, 2))]
-    patterns = ("rgb/*", "depth/*") if dataset == "tum" else ("scene_00_*",)
+    patterns = {"tum": ("rgb/*", "depth/*"), "icl": ("scene_00_*",),
+                "euroc": ("mav0/cam0/data/*", "mav0/cam1/data/*"),
+                "kitti": ("image_0/*", "image_1/*")}[dataset]
     return found or [(folder, path) for pattern in patterns for path in sorted(folder.glob(pattern))
                      if path.suffix.lower() in IMAGES]
 
@@ -132,7 +138,9 @@ def settings_file(folder, dataset, config):
     """The settings that a run takes without --settings (docs/settings.md); None without any."""
     match = re.search(r"fr(?:eiburg)?([123])", folder.resolve().name)
     name = "ICL.yaml" if dataset == "icl" else f"TUM{match[1]}.yaml" if match else None
-    path = folder / "camera.yaml" if (folder / "camera.yaml").is_file() else name and config / name
+    name = {"euroc": folder / "mav0" / "cam0" / "sensor.yaml",
+            "kitti": folder / "calib.txt"}.get(dataset, name and config / name)
+    path = folder / "camera.yaml" if (folder / "camera.yaml").is_file() else name
     return path if path and path.is_file() else None
 
 
@@ -189,12 +197,14 @@ def read_sequence(text, masks, paper_sequences, config):
     name = short_name(folder)
     path, objects = find_masks(folder, masks, name), folder / "groundtruth_objects.json"
     has_depth = dataset == "icl" or (folder / "depth.txt").is_file() or (folder / "depth").is_dir()
+    has_pairs = dataset in PAIRS or (folder / "right").is_dir()
+    modes = (("rgbd",) * has_depth + ("mono",) * (dataset not in PAIRS) + ("stereo",) * has_pairs)
     return Sequence(name, dataset, paper_name(name, paper_sequences), str(folder.resolve()),
                     str(path.resolve()) if path else None,
                     str(objects.resolve()) if objects.is_file() else None,
-                    modes=("rgbd", "mono") if has_depth else ("mono",),
-                    frames=len(images) // 2 if has_depth else len(images),
-                    settings=str(settings.resolve()),
+                    modes=modes,
+                    frames=len(images) // 2 if has_depth or dataset in PAIRS else len(images),
+                    settings=None if dataset in PAIRS else str(settings.resolve()),
                     has_rolling_shutter=has_rolling_shutter(settings),
                     fingerprint=fingerprint(folder, images, settings),
                     masks_fingerprint=hash_masks(path) if path else "")

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "files/byte_reader.h"
 #include "files/protobuf_reader.h"
@@ -107,6 +108,11 @@ std::vector<double> ReadDoubles(std::string_view bytes, const std::string& name)
   return numbers;
 }
 
+template <size_t kCount>
+void CopyMatrix(const std::vector<double>& numbers, std::array<double, kCount>& matrix) {
+  std::copy_n(numbers.begin(), std::min(numbers.size(), kCount), matrix.begin());
+}
+
 // foxglove.CameraCalibration.
 CameraInfoMessage ReadFoxgloveCamera(std::string_view bytes, const std::string& name) {
   CameraInfoMessage camera;
@@ -121,8 +127,11 @@ CameraInfoMessage ReadFoxgloveCamera(std::string_view bytes, const std::string& 
     } else if (reader.field() == 5) {
       camera.distortion = ReadDoubles(reader.bytes(), name);
     } else if (reader.field() == 6) {
-      const std::vector<double> k = ReadDoubles(reader.bytes(), name);
-      std::copy_n(k.begin(), std::min(k.size(), camera.k.size()), camera.k.begin());
+      CopyMatrix(ReadDoubles(reader.bytes(), name), camera.k);
+    } else if (reader.field() == 7) {
+      CopyMatrix(ReadDoubles(reader.bytes(), name), camera.r);
+    } else if (reader.field() == 8) {
+      CopyMatrix(ReadDoubles(reader.bytes(), name), camera.p);
     }
   }
   return camera;
@@ -198,8 +207,11 @@ CameraInfoMessage ReadCameraInfo(MessageCoding coding, std::string_view bytes,
   for (double& number : camera.distortion) {
     number = reader.Get<double>();
   }
-  for (double& number : camera.k) {
-    number = reader.Get<double>();
+  for (const std::span<double> matrix :
+       {std::span<double>(camera.k), std::span<double>(camera.r), std::span<double>(camera.p)}) {
+    for (double& number : matrix) {
+      number = reader.Get<double>();
+    }
   }
   return camera;
 }

@@ -26,7 +26,7 @@ struct BagTime {
   double Seconds() const { return static_cast<double>(seconds) + nanoseconds / 1e9; }
 };
 
-// What the messages of a topic are.
+// The kind of the messages of a topic.
 enum class BagContent { kImage, kCompressedImage, kCamera, kOther };
 BagContent ContentOf(const BagTopic& topic);
 
@@ -49,14 +49,18 @@ struct CompressedImageMessage {
   std::string_view data;
 };
 
-// sensor_msgs/CameraInfo or foxglove.CameraCalibration, without what is only used for stereo
-// cameras.
+// sensor_msgs/CameraInfo or foxglove.CameraCalibration.
 struct CameraInfoMessage {
   uint32_t height = 0;  // px
   uint32_t width = 0;
   std::string distortion_model;
   std::vector<double> distortion;
-  std::array<double, 9> k{};  // the calibration matrix, row by row, px
+  // Matrices row by row: the calibration matrix (px), the rotation that rectifies a camera of a
+  // pair, and the projection of the rectified images (px). The last two are 0 if the message lacks
+  // them.
+  std::array<double, 9> k{};
+  std::array<double, 9> r{};
+  std::array<double, 12> p{};
 };
 
 // Read a message. Throw InputError that begins with `name`, the name of the file and the topic, if

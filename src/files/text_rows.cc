@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <system_error>
 
 #include "files/plausible.h"
@@ -131,8 +130,8 @@ void ForEachRow(const std::filesystem::path& path,
   const std::string bytes = ReadText(path, most_bytes);
   const std::string_view text = bytes;
   TextRow row{.path = path, .line = 0, .columns = {}};
-  bool is_first = true;      // no line with data or with names has come yet
-  std::optional<int> names;  // the line with the names, until data follow
+  bool is_first = true;  // no line with data or with names has come yet
+  int names = 0;         // the line with the names, until data follow; then 0
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = text.substr(begin, end - begin);
@@ -146,15 +145,16 @@ void ForEachRow(const std::filesystem::path& path,
     }
     if (is_first && (is_comment || NamesColumns(row.columns))) {
       row.header = line;
-      names = is_comment ? std::nullopt : std::optional(row.line);
+      names = is_comment ? 0 : row.line;
     } else if (!row.columns.empty() && !is_comment) {
-      names.reset();
+      names = 0;
       visit(row);
     }
     is_first = is_first && (row.columns.empty() || is_comment);
   }
-  if (names) {  // no data follow, so the line is not what it seems, and the visitor can say why
-    row.line = *names;
+  // If no data follow, the line is not what it seems, and the visitor can say why.
+  if (names != 0) {
+    row.line = names;
     SplitColumns(row.header, row.columns);
     visit(row);
   }

@@ -77,7 +77,8 @@ std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera&
 
 // The pixels of the masks and those about them.
 cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
-  constexpr double kAbout = 32.0;  // px; so far it is tested whether something hides an object
+  // px. The depths at 8 px beyond a line tell whether something hides an object; blocks are larger.
+  constexpr double kAbout = 12.0;
   const cv::Rect image({0, 0}, size);
   Eigen::AlignedBox2d box;
   for (const InstanceMask& mask : masks) {
@@ -179,21 +180,28 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
   }
 }
 
-BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
+BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
   using Clock = std::chrono::steady_clock;
   CheckImages(image, sensor_);
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
-  const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
+  DetectionInput input;
+  input.keypoints = AddFeatures(image, runner, built.frame->features);
   if (vocabulary_ != nullptr) {
     built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
   }
   built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
-  built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
+  const bool is_awaiting = awaits_masks && detector_ && image.masks.empty();
   if (detector_) {
-    const cv::Mat depth =
-        stereo_ ? DepthOfMasks(image, built.frame->features, runner) : image.depth;
-    detector_->AddDetections(image.masks, depth, keypoints, runner, built);
+    const cv::Rect all(0, 0, image.grey.cols, image.grey.rows);
+    const cv::Rect region = is_awaiting ? all : RegionOf(image.masks, image.grey.size());
+    input.depth = stereo_ ? DepthIn(region, image, built.frame->features, runner) : image.depth;
+  }
+  if (is_awaiting) {
+    input.depth = input.depth.clone();  // the caller may write the next image there
+    built.awaiting = std::make_shared<const DetectionInput>(std::move(input));
+  } else {
+    AddDetections(image.masks, input, runner, built);
   }
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
@@ -201,9 +209,8 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
 }
 
 // The keypoints on an object are too few to show its surface.
-cv::Mat FrameBuilder::DepthOfMasks(const ImageInput& image, const FrameFeatures& features,
-                                   TaskRunner& runner) const {
-  const cv::Rect region = RegionOf(image.masks, image.grey.size());
+cv::Mat FrameBuilder::DepthIn(const cv::Rect& region, const ImageInput& image,
+                              const FrameFeatures& features, TaskRunner& runner) const {
   if (region.empty()) {
     return {};
   }
@@ -213,6 +220,14 @@ cv::Mat FrameBuilder::DepthOfMasks(const ImageInput& image, const FrameFeatures&
     disparities.push_back(depth > 0.0F ? static_cast<float>(sensor_.camera.bf) / depth : 0.0F);
   }
   return CoarseDepth(image.grey, image.right, sensor_.camera, {region, disparities}, runner);
+}
+
+void FrameBuilder::AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
+                                 TaskRunner& runner, BuiltFrame& built) {
+  built.masks.frames_with_masks = masks.empty() ? 0 : 1;
+  if (detector_) {
+    detector_->AddDetections(masks, input.depth, input.keypoints, runner, built);
+  }
 }
 
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,

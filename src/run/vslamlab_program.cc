@@ -13,6 +13,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "files/atomic_file.h"
@@ -21,10 +22,12 @@
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/datasets/stereo_dataset.h"
 #include "run/input_warnings.h"
 #include "run/load_settings.h"
 #include "run/program.h"
 #include "run/slam_run.h"
+#include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
 #include "util/shown_text.h"
 
@@ -45,9 +48,10 @@ constexpr auto kKeys = std::to_array<Key>({
     {"rgb_csv", true, "list of its images, relative to sequence_path"},
     {"exp_folder", true, "folder for the results"},
     {"exp_id", true, "name of the run, which the names of its files begin with"},
-    {"settings_yaml", false, "settings of HullSLAM, and cam_mono or cam_rgbd (rgb_0)"},
+    {"settings_yaml", false,
+     "settings of HullSLAM, and cam_mono or cam_rgbd (rgb_0), or cam_stereo (rgb_0 and rgb_1)"},
     {"verbose", false, "0: print only errors (1)"},
-    {"mode", false, "mono or rgbd, the mode of the program"},
+    {"mode", false, "mono, rgbd or stereo, the mode of the program"},
     {"masks", false, "masks of the images, as --masks of the other programs"},
     {"preset", false, "as --preset of the other programs"},
     {"seed", false, "of the random numbers (0)"},
@@ -55,7 +59,16 @@ constexpr auto kKeys = std::to_array<Key>({
 
 using Values = std::map<std::string, std::string, std::less<>>;
 
-std::string ModeOf(SensorKind sensor) { return sensor == SensorKind::kMonocular ? "mono" : "rgbd"; }
+std::string ModeOf(SensorKind sensor) {
+  switch (sensor) {
+    case SensorKind::kMonocular:
+      return "mono";
+    case SensorKind::kStereo:
+      return "stereo";
+    default:
+      return "rgbd";
+  }
+}
 
 std::string ProgramName(SensorKind sensor) { return "vslamlab_hullslam_" + ModeOf(sensor); }
 
@@ -112,7 +125,7 @@ void CheckChoices(SensorKind sensor, const Values& values) {
   const std::string mode = Get(values, "mode", ModeOf(sensor));
   if (mode != ModeOf(sensor)) {
     throw InputError(
-        fmt::format("mode is '{}', expected '{}' (the other mode has a program of its "
+        fmt::format("mode is '{}', expected '{}' (the other modes have programs of their "
                     "own)",
                     ShowText(mode), ModeOf(sensor)));
   }
@@ -130,6 +143,7 @@ void CheckChoices(SensorKind sensor, const Values& values) {
 // VSLAM-LAB that name the camera.
 struct BaselineSettings {
   std::string camera = "rgb_0";
+  std::string right_camera = "rgb_1";  // of a stereo camera
   std::vector<std::string> overrides;  // key=value
 };
 
@@ -140,7 +154,12 @@ BaselineSettings ReadBaselineSettings(const std::string& file, SensorKind sensor
   }
   const std::string camera_key = "cam_" + ModeOf(sensor);
   for (const WrittenSetting& setting : ReadYamlSettings(file)) {
-    if (setting.key == camera_key) {
+    if (setting.key == camera_key && sensor == SensorKind::kStereo) {
+      const std::vector<std::string> names =
+          YamlMap(file, "settings").Texts(camera_key, 2, "the left and the right camera");
+      result.camera = names[0];
+      result.right_camera = names[1];
+    } else if (setting.key == camera_key) {
       result.camera = SingleValue(setting);
     } else if (!setting.key.starts_with("cam_")) {
       result.overrides.push_back(setting.key + "=" + SingleValue(setting));
@@ -201,6 +220,45 @@ fs::path ResultFile(const fs::path& folder, const std::string& name) {
   return folder / (name + "_KeyFrameTrajectory.csv");
 }
 
+struct OpenedImages {
+  VslamlabSequence sequence;
+  CameraCalibration calibration;
+  bool is_mirrored = false;
+  std::vector<std::string> overrides;  // key=value
+};
+
+OpenedImages OpenImages(SensorKind sensor, const Values& values, const BaselineSettings& baseline) {
+  const fs::path calibration = Get(values, "calibration_yaml", "");
+  const fs::path folder = Get(values, "sequence_path", "");
+  const fs::path list = Get(values, "rgb_csv", "");
+  OpenedImages opened;
+  opened.overrides = baseline.overrides;
+  if (sensor == SensorKind::kStereo) {
+    const VslamlabPairNames names{baseline.camera, baseline.right_camera};
+    const VslamlabPair pair = ReadVslamlabPair(calibration, names);
+    opened.sequence = OpenVslamlabPairs(folder, list, names, pair);
+    opened.sequence.images.choices["calibration"] = fs::absolute(calibration).string();
+    opened.calibration = pair.calibration;
+    CheckPairs(list, opened.sequence.images, pair.calibration.camera);
+    return opened;
+  }
+  const VslamlabCamera camera = ReadVslamlabCamera(calibration, baseline.camera);
+  const bool uses_depth = sensor == SensorKind::kRgbd;
+  if (uses_depth && camera.depth_name.empty()) {
+    throw InputError(fmt::format("{}: the camera '{}' has no depth_name, expected one for RGB-D",
+                                 calibration.string(), ShowText(baseline.camera)));
+  }
+  if (uses_depth) {
+    opened.overrides.insert(opened.overrides.begin(),
+                            fmt::format("DepthMapFactor={}", camera.depth_factor));
+  }
+  opened.sequence =
+      OpenVslamlabSequence(folder, list, baseline.camera, uses_depth ? camera.depth_name : "");
+  opened.calibration = camera.calibration;
+  opened.is_mirrored = camera.is_mirrored;
+  return opened;
+}
+
 int Run(SensorKind sensor, int argc, char** argv) {
   CLI::App app(fmt::format("Runs SLAM ({}) for VSLAM-LAB. Writes EXP_FOLDER/"
                            "EXP_ID_KeyFrameTrajectory.csv, and all other results into the folder "
@@ -216,39 +274,23 @@ int Run(SensorKind sensor, int argc, char** argv) {
   const Values values = ParseValues(words);
   CheckChoices(sensor, values);
   const BaselineSettings baseline = ReadBaselineSettings(Get(values, "settings_yaml", ""), sensor);
-  const fs::path calibration = Get(values, "calibration_yaml", "");
-  const VslamlabCamera camera = ReadVslamlabCamera(calibration, baseline.camera);
-  const bool uses_depth = sensor == SensorKind::kRgbd;
-  if (uses_depth && camera.depth_name.empty()) {
-    throw InputError(fmt::format("{}: the camera '{}' has no depth_name, expected one for RGB-D",
-                                 calibration.string(), ShowText(baseline.camera)));
-  }
-
   const fs::path folder = Get(values, "exp_folder", "");
   const std::string id = Get(values, "exp_id", "");
   const RunArguments arguments = MakeArguments(sensor, values);
-  std::vector<std::string> overrides;
-  if (uses_depth) {
-    overrides.push_back(fmt::format("DepthMapFactor={}", camera.depth_factor));
-  }
-  overrides.insert(overrides.end(), baseline.overrides.begin(), baseline.overrides.end());
-
-  const VslamlabSequence sequence =
-      OpenVslamlabSequence(arguments.sequence, Get(values, "rgb_csv", ""), baseline.camera,
-                           uses_depth ? camera.depth_name : "");
-  PrintWarnings(sequence.images);
-  LoadedSettings settings =
-      LoadSettings(camera.calibration, calibration.string(), arguments.preset, overrides);
+  const OpenedImages opened = OpenImages(sensor, values, baseline);
+  PrintWarnings(opened.sequence.images);
+  LoadedSettings settings = LoadSettings(opened.calibration, Get(values, "calibration_yaml", ""),
+                                         arguments.preset, opened.overrides);
   settings.options.sensor = sensor;
   for (const std::string& name : ResultNames(id)) {
     fs::remove(ResultFile(folder, name));  // a run that fails must not leave an older result
   }
-  const int code = RunSlam(arguments, std::move(settings), sequence.images, {});
+  const int code = RunSlam(arguments, std::move(settings), opened.sequence.images, {});
   if (code == kDone) {
     Trajectory keyframes = ReadTrajectory(arguments.output / "keyframes.txt");
-    keyframes = camera.is_mirrored ? MirrorY(std::move(keyframes)) : std::move(keyframes);
+    keyframes = opened.is_mirrored ? MirrorY(std::move(keyframes)) : std::move(keyframes);
     for (const std::string& name : ResultNames(id)) {
-      WriteFileAtomically(ResultFile(folder, name), FormatKeyframes(keyframes, sequence));
+      WriteFileAtomically(ResultFile(folder, name), FormatKeyframes(keyframes, opened.sequence));
     }
   }
   return code;

@@ -19,6 +19,7 @@
 #include "segmentation/onnx_file.h"
 #include "segmentation/open_network.h"
 #include "segmentation/suppress_overlaps.h"
+#include "util/components.h"
 #include "util/edit_distance.h"
 
 namespace hullslam {
@@ -110,6 +111,7 @@ class Segmenter::Implementation {
  public:
   Implementation(const fs::path& path, const SegmenterOptions& options)
       : path_(path), options_(options) {
+    RequireComponent("SEGMENTATION", path.string() + ": is a network for masks");
     CheckOptions();
     OnnxFile file = ReadOnnx(path);
     declared_ = DeclaredSize(path, file);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -15,6 +17,9 @@
 #include "sequences/bag_topics.h"
 #include "sequences/image_file.h"
 #include "sequences/image_list.h"
+#include "sequences/stereo_loading.h"
+#include "sequences/stereo_pairing.h"
+#include "settings/rotation_matrix.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -26,6 +31,8 @@ constexpr double kMostApart = 0.02;  // s, as in TUM's associate.py
 constexpr const char* kImageOption = "--image-topic";
 constexpr const char* kDepthOption = "--depth-topic";
 constexpr const char* kInfoOption = "--info-topic";
+constexpr const char* kRightOption = "--right-topic";
+constexpr const char* kRightInfoOption = "--right-info-topic";
 
 struct StampedImage {
   double timestamp = 0.0;  // s
@@ -167,6 +174,13 @@ class BagLoader {
         depth_(std::move(depth)),
         float_units_(float_units) {}
 
+  // Adds a frame of a stereo camera: the second topic has its right images.
+  void AddPair(const fs::path& source, size_t left, size_t right, ImageSequence& sequence) {
+    AddFrame(source, left, std::nullopt, sequence);
+    sequence.frames.back().right = NameOf(source, depth_, right);
+    frames_.back().second = right;
+  }
+
   // Adds a frame of the images with these indices. `source` is the path of the recording.
   void AddFrame(const fs::path& source, size_t colour, std::optional<size_t> depth,
                 ImageSequence& sequence) {
@@ -189,6 +203,10 @@ class BagLoader {
       if (image.depth.depth() == CV_32F && float_units_ != 1.0) {
         image.depth /= float_units_;
       }
+    }
+    if (!frame.right.empty()) {
+      image.right = Read(depth_, depth, Decoding::kGrey, frame.right.string());
+      CheckImageSize(frame.right.string(), image.right, camera);
     }
     CheckImageSize(name, image.grey, camera);
     return image;
@@ -218,7 +236,7 @@ class BagLoader {
 
   std::vector<std::unique_ptr<Bag>> bags_;
   TopicImages colour_;
-  TopicImages depth_;         // without images if there is no depth
+  TopicImages depth_;         // or the right images; without images if there is neither
   double float_units_ = 1.0;  // of 32FC1, per metre
   std::vector<std::pair<size_t, size_t>> frames_;
 };
@@ -291,6 +309,74 @@ double RateOf(const TopicImages& topic) {
   return topic.images.size() < 2 ? kUsual : static_cast<double>(topic.images.size() - 1) / seconds;
 }
 
+// Whether the images of a topic are rectified already, by the names of ROS's image_proc. Their
+// CameraInfo is that of the raw images, so it does not tell.
+bool IsRectifiedTopic(const IndexedTopic& topic) {
+  return topic.name.find("rect") != std::string::npos;
+}
+
+// The calibration of rectified images: the left half of the projection P.
+CameraCalibration RectifiedCalibrationOf(const fs::path& path, const IndexedTopic& topic,
+                                         double frames_per_second) {
+  const std::array<double, 12>& p = topic.camera->p;
+  if (!(p[0] > 0.0)) {
+    throw InputError(
+        fmt::format("{}: {}: the camera is not rectified, its matrix P is 0; expected "
+                    "--settings FILE",
+                    path.string(), ShowText(topic.name)));
+  }
+  return {.camera = {.fx = p[0],
+                     .fy = p[5],
+                     .cx = p[2],
+                     .cy = p[6],
+                     .width = static_cast<int>(topic.camera->width),
+                     .height = static_cast<int>(topic.camera->height)},
+          .frames_per_second = frames_per_second};
+}
+
+Eigen::Quaterniond RectifyingRotation(const fs::path& path, const IndexedTopic& topic) {
+  const Eigen::Matrix3d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(topic.camera->r.data());
+  const auto rotation = RotationOf(matrix);
+  if (!rotation) {
+    throw InputError(fmt::format("{}: {}: its matrix R is no rotation; expected --settings FILE",
+                                 path.string(), ShowText(topic.name)));
+  }
+  return *rotation;
+}
+
+// The pair of two CameraInfo. The projections are those of rectified images; the fourth column of
+// the right one is minus the baseline times the focal length.
+StereoCalibration PairOf(const fs::path& path, const std::array<const IndexedTopic*, 2>& infos,
+                         bool is_rectified, double frames_per_second) {
+  StereoCalibration pair;
+  const auto camera_of = [&](const IndexedTopic& topic) {
+    return (is_rectified ? RectifiedCalibrationOf : CalibrationOf)(path, topic, frames_per_second)
+        .camera;
+  };
+  pair.left = camera_of(*infos[0]);
+  pair.right = camera_of(*infos[1]);
+  const std::array<double, 12>& left_p = infos[0]->camera->p;
+  const std::array<double, 12>& right_p = infos[1]->camera->p;
+  if (left_p[0] > 0.0 && right_p[0] > 0.0) {
+    pair.right_from_left.translation.x() = right_p[3] / right_p[0] - left_p[3] / left_p[0];
+  }
+  if (!is_rectified) {
+    const Eigen::Quaterniond left = RectifyingRotation(path, *infos[0]);
+    const Eigen::Quaterniond right = RectifyingRotation(path, *infos[1]);
+    pair.right_from_left = Rigid3{right.inverse(), Eigen::Vector3d::Zero()} *
+                           Rigid3{left, pair.right_from_left.translation};
+  }
+  return pair;
+}
+
+void SetLoaders(const std::shared_ptr<BagLoader>& loader, ImageSequence& sequence) {
+  sequence.load = [loader](const FramePaths& frame, const PinholeCamera& camera) {
+    return loader->Load(frame, camera);
+  };
+  sequence.load_colour = [loader](const FramePaths& frame) { return loader->LoadColour(frame); };
+}
+
 }  // namespace
 
 BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& options) {
@@ -343,14 +429,61 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
       loader->AddFrame(path, i, std::nullopt, sequence.images);
     }
   }
-  sequence.images.load = [loader](const FramePaths& frame, const PinholeCamera& camera) {
-    return loader->Load(frame, camera);
-  };
-  sequence.images.load_colour = [loader](const FramePaths& frame) {
-    return loader->LoadColour(frame);
-  };
+  SetLoaders(loader, sequence.images);
   SelectFrames(path, options.selection, sequence.images);
   return sequence;
+}
+
+BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
+                      std::shared_ptr<const StereoRectifier> rectifier) {
+  std::vector<std::unique_ptr<Bag>> bags = OpenBags(path);
+  BagIndex index = IndexBags(path, bags);
+  BagSequence opened;
+  opened.warnings = std::move(index.warnings);
+  const auto topics =
+      ChoosePairTopics(index, options.image_topic, options.right_topic, kImageOption, kRightOption);
+  std::array<TopicImages, 2> both;
+  for (size_t i = 0; i < both.size(); ++i) {
+    both[i] = OrderImages(path, *topics[i], options.use_recording_times, opened);
+    opened.notes.push_back(DescribeTopic(i == 0 ? "left images" : "right images", both[i]));
+  }
+  BagPairs pairs;
+  pairs.images.dataset = "bag_stereo";
+  pairs.images.choices = {{"image_topic", topics[0]->name}, {"right_topic", topics[1]->name}};
+  if (options.use_recording_times) {
+    pairs.images.choices["times"] = "recording";
+  }
+  const double rate = RateOf(both[0]);
+  if (options.need_camera) {
+    const IndexedTopic& left = ChooseInfoTopic(index, *topics[0], options.info_topic, kInfoOption);
+    const IndexedTopic& right =
+        ChooseInfoTopic(index, *topics[1], options.right_info_topic, kRightInfoOption);
+    pairs.images.choices["info_topic"] = left.name;
+    pairs.images.choices["right_info_topic"] = right.name;
+    opened.notes.push_back(
+        fmt::format("cameras: {} and {}", ShowText(left.name), ShowText(right.name)));
+    rectifier = std::make_shared<const StereoRectifier>(
+        PairOf(path, {&left, &right}, IsRectifiedTopic(*topics[0]), rate), path.string());
+    pairs.calibration = CameraCalibration{rectifier->camera(), rate};
+  }
+  const std::vector<double> of_left = StampsOfTopic(both[0]);
+  const std::vector<double> of_right = StampsOfTopic(both[1]);
+  const std::vector<IndexPair> paired =
+      PairStereoStamps(path.string(), {ShowText(topics[0]->name), of_left},
+                       {ShowText(topics[1]->name), of_right}, rate, opened.warnings);
+  const auto loader =
+      std::make_shared<BagLoader>(std::move(bags), std::move(both[0]), std::move(both[1]), 1.0);
+  for (const IndexPair& pair : paired) {
+    loader->AddPair(path, pair.first, pair.second, pairs.images);
+  }
+  SetLoaders(loader, pairs.images);
+  if (rectifier != nullptr) {
+    RectifyPairs(rectifier, pairs.images);
+  }
+  SelectFrames(path, options.selection, pairs.images);
+  pairs.notes = std::move(opened.notes);
+  pairs.warnings = std::move(opened.warnings);
+  return pairs;
 }
 
 }  // namespace hullslam

@@ -173,6 +173,35 @@ const IndexedTopic& GivenTopic(const BagIndex& index, const std::string& name, c
   return *found;
 }
 
+// The words in which the names of the topics of a pair differ.
+constexpr std::array<std::array<std::string_view, 2>, 6> kSides = {{{"left", "right"},
+                                                                    {"infra1", "infra2"},
+                                                                    {"cam0", "cam1"},
+                                                                    {"cam_0", "cam_1"},
+                                                                    {"camera0", "camera1"},
+                                                                    {"image_0", "image_1"}}};
+
+std::string ReplaceAll(std::string text, std::string_view from, std::string_view to) {
+  for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// The topic of the other camera; null if there is none. `side` is that of the given one.
+const IndexedTopic* PartnerOf(const IndexedTopic& topic, size_t side, const Candidates& all) {
+  for (const auto& words : kSides) {
+    const std::string other = ReplaceAll(topic.name, words[side], words[1 - side]);
+    const auto found = std::find_if(all.begin(), all.end(), [&](const IndexedTopic* candidate) {
+      return candidate->name == other;
+    });
+    if (other != topic.name && found != all.end()) {
+      return *found;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 BagIndex IndexBags(const std::filesystem::path& path,
@@ -236,6 +265,43 @@ const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
                                   candidates.size(), what, option));
   }
   return *candidates.front();
+}
+
+std::array<const IndexedTopic*, 2> ChoosePairTopics(const BagIndex& index, const std::string& left,
+                                                    const std::string& right,
+                                                    const char* left_option,
+                                                    const char* right_option) {
+  constexpr BagImageKind kColour = BagImageKind::kColour;
+  const Candidates all = CandidatesOf(index, kColour);
+  std::vector<std::array<const IndexedTopic*, 2>> pairs;
+  if (!left.empty() && !right.empty()) {
+    pairs.push_back({&ChooseImageTopic(index, kColour, left, left_option),
+                     &ChooseImageTopic(index, kColour, right, right_option)});
+  } else if (!left.empty()) {
+    const IndexedTopic& given = ChooseImageTopic(index, kColour, left, left_option);
+    pairs.push_back({&given, PartnerOf(given, 0, all)});
+  } else if (!right.empty()) {
+    const IndexedTopic& given = ChooseImageTopic(index, kColour, right, right_option);
+    pairs.push_back({PartnerOf(given, 1, all), &given});
+  } else {
+    for (const IndexedTopic* topic : WithoutCompressedForms(all)) {
+      pairs.push_back({topic, PartnerOf(*topic, 0, all)});
+    }
+  }
+  std::erase_if(pairs, [](const auto& pair) {
+    return pair[0] == nullptr || pair[1] == nullptr || pair[0] == pair[1];
+  });
+  const auto is_raw = [](const auto& pair) { return !HasAny(pair[0]->name, {"rect"}); };
+  if (pairs.size() > 1 && std::count_if(pairs.begin(), pairs.end(), is_raw) + 1 ==
+                              static_cast<std::ptrdiff_t>(pairs.size())) {
+    std::erase_if(pairs, is_raw);
+  }
+  if (pairs.size() != 1) {
+    FailTopics(index, fmt::format("has {} pairs of topics with left and right images, expected {} "
+                                  "TOPIC and {} TOPIC",
+                                  pairs.size(), left_option, right_option));
+  }
+  return pairs.front();
 }
 
 const IndexedTopic& ChooseInfoTopic(const BagIndex& index, const IndexedTopic& images,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -57,6 +58,14 @@ BagIndex IndexBags(const std::filesystem::path& path,
 // can choose.
 const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
                                      const std::string& name, const char* option);
+
+// The topics of the left and the right images of a pair, which may be named. Otherwise their names
+// differ only by left and right, infra1 and infra2, cam0 and cam1 or the like. If several pairs
+// do, it is the only one that is rectified by its name. Throws InputError like ChooseImageTopic().
+std::array<const IndexedTopic*, 2> ChoosePairTopics(const BagIndex& index, const std::string& left,
+                                                    const std::string& right,
+                                                    const char* left_option,
+                                                    const char* right_option);
 
 // The topic with the CameraInfo of an image topic: `name` if it is given, else camera_info beside
 // it, else the only one. Throws InputError like ChooseImageTopic().

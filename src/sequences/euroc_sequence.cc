@@ -18,6 +18,8 @@
 #include "sequences/euroc_states.h"
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
+#include "sequences/stereo_pairing.h"
+#include "settings/rotation_matrix.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
@@ -39,15 +41,11 @@ Rigid3 ReadPose(const YamlMap& file, const char* key) {
   const std::vector<double> data = file.Map(key).Numbers("data", 16, "a 4x4 matrix by rows");
   const Eigen::Matrix4d matrix =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
-  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  constexpr double kTolerance = 1e-3;  // files round their numbers
-  const bool is_rotation =
-      (rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance) &&
-      rotation.determinant() > 0.0;
-  if (!is_rotation || matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+  const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());
+  if (!rotation || matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
     file.Fail(key, "is not a rigid transform, expected a rotation, a translation and 0 0 0 1");
   }
-  return {Eigen::Quaterniond(rotation).normalized(), matrix.topRightCorner<3, 1>()};
+  return {*rotation, matrix.topRightCorner<3, 1>()};
 }
 
 EurocCamera ParseCamera(const YamlMap& file) {
@@ -83,40 +81,24 @@ std::vector<FramePaths> ReadImages(const fs::path& camera, std::vector<std::stri
   return TakeFrames(list, std::move(frames), warnings);
 }
 
-// The partners of the left images: the right images with the nearest stamps.
+std::vector<double> StampsOf(const std::vector<FramePaths>& frames) {
+  std::vector<double> stamps;
+  for (const FramePaths& frame : frames) {
+    stamps.push_back(frame.timestamp);
+  }
+  return stamps;
+}
+
 std::vector<FramePaths> PairImages(const fs::path& root, double frames_per_second,
                                    std::vector<std::string>& warnings) {
-  // The camera may move by a twentieth of its way between two images, a pixel or two.
-  constexpr double kMostShare = 0.05;
-  const double most = kMostShare / frames_per_second;
   const std::vector<FramePaths> left = ReadImages(root / "cam0", warnings);
   const std::vector<FramePaths> right = ReadImages(root / "cam1", warnings);
   std::vector<FramePaths> pairs;
-  double farthest = 0.0;
-  for (size_t i = 0, k = 0; i < left.size(); ++i) {
-    const auto distance = [&](size_t other) {
-      return std::abs(right[other].timestamp - left[i].timestamp);
-    };
-    while (k + 1 < right.size() && distance(k + 1) <= distance(k)) {
-      ++k;
-    }
-    farthest = std::max(farthest, distance(k));
-    if (distance(k) <= most) {
-      pairs.push_back(left[i]);
-      pairs.back().right = right[k].image;
-    }
-  }
-  if (2 * pairs.size() < left.size()) {
-    throw InputError(fmt::format(
-        "{}: {} of {} images of cam0 have one of cam1 within {:.1f} ms, expected synchronised "
-        "cameras",
-        root.string(), pairs.size(), left.size(), 1e3 * most));
-  }
-  if (pairs.size() < left.size()) {
-    warnings.push_back(fmt::format(
-        "{}: {} of {} images of cam0 have none of cam1 within {:.1f} ms (farthest {:.1f} ms); they "
-        "are left out",
-        root.string(), left.size() - pairs.size(), left.size(), 1e3 * most, 1e3 * farthest));
+  for (const IndexPair& pair :
+       PairStereoStamps(root.string(), {"cam0", StampsOf(left)}, {"cam1", StampsOf(right)},
+                        frames_per_second, warnings)) {
+    pairs.push_back(left[pair.first]);
+    pairs.back().right = right[pair.second].image;
   }
   for (size_t i = 0; i < pairs.size(); ++i) {
     pairs[i].number = i;

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a sequence of any kind is opened with.
+// The arguments with which a sequence of any kind is opened.
 struct Reopening {
   const SequenceOfRun& run;
   const fs::path& path;
@@ -54,6 +54,12 @@ ImageSequence OpenEurocStereo(const Reopening& opening) {
 
 ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
 
+// Null without a file.
+std::shared_ptr<const StereoRectifier> RectifierOf(const std::string& calibration) {
+  return calibration.empty() ? nullptr
+                             : MakeRectifier(calibration, ReadSettings(calibration).camera);
+}
+
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");
   const std::string rate = opening.Choice("frames_per_second");
@@ -61,9 +67,7 @@ ImageSequence OpenPairs(const Reopening& opening) {
   if (!rate.empty()) {
     options.frames_per_second = std::strtod(rate.c_str(), nullptr);
   }
-  if (!calibration.empty()) {
-    options.rectifier = MakeRectifier(calibration, ReadSettings(calibration).camera);
-  }
+  options.rectifier = RectifierOf(calibration);
   return OpenStereoFolder(opening.path, options);
 }
 
@@ -79,6 +83,18 @@ ImageSequence OpenBag(const Reopening& opening) {
       .images;
 }
 
+ImageSequence OpenBagStereo(const Reopening& opening) {
+  const std::string calibration = opening.Choice("calibration");
+  const BagSequenceOptions options = {
+      .image_topic = opening.Choice("image_topic"),
+      .info_topic = opening.Choice("info_topic"),
+      .right_topic = opening.Choice("right_topic"),
+      .right_info_topic = opening.Choice("right_info_topic"),
+      .need_camera = !opening.Choice("info_topic").empty(),
+      .use_recording_times = opening.Choice("times") == "recording"};
+  return OpenBagPairs(opening.path, options, RectifierOf(calibration)).images;
+}
+
 ImageSequence OpenVideo(const Reopening& opening) { return OpenImageStream(opening.path).images; }
 
 ImageSequence OpenVslamlab(const Reopening& opening) {
@@ -88,20 +104,31 @@ ImageSequence OpenVslamlab(const Reopening& opening) {
       .images;
 }
 
+ImageSequence OpenVslamlabStereo(const Reopening& opening) {
+  return OpenVslamlabPairs(
+             opening.path, opening.path / opening.Choice("rgb_csv"),
+             {opening.Choice("image_name"), opening.Choice("right_name")},
+             ReadVslamlabPair(opening.Choice("calibration"),
+                              {opening.Choice("image_name"), opening.Choice("right_name")}))
+      .images;
+}
+
 struct NamedDataset {
   const char* name;  // ImageSequence::dataset
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
-                                                    {"icl", OpenIcl},
-                                                    {"euroc", OpenEuroc},
-                                                    {"euroc_stereo", OpenEurocStereo},
-                                                    {"kitti", OpenKitti},
-                                                    {"stereo_folder", OpenPairs},
-                                                    {"bag", OpenBag},
-                                                    {"video", OpenVideo},
-                                                    {"vslamlab", OpenVslamlab}}};
+constexpr std::array<NamedDataset, 11> kDatasets = {{{"tum", OpenTum},
+                                                     {"icl", OpenIcl},
+                                                     {"euroc", OpenEuroc},
+                                                     {"euroc_stereo", OpenEurocStereo},
+                                                     {"kitti", OpenKitti},
+                                                     {"stereo_folder", OpenPairs},
+                                                     {"bag", OpenBag},
+                                                     {"bag_stereo", OpenBagStereo},
+                                                     {"video", OpenVideo},
+                                                     {"vslamlab", OpenVslamlab},
+                                                     {"vslamlab_stereo", OpenVslamlabStereo}}};
 
 }  // namespace
 

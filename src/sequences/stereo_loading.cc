@@ -54,6 +54,18 @@ void LoadPairs(Rectifier rectifier, ImageSequence& sequence) {
   FitMasks(rectifier, sequence);
 }
 
+void RectifyPairs(Rectifier rectifier, ImageSequence& sequence) {
+  sequence.load = [rectifier, load = sequence.load](const FramePaths& frame,
+                                                    const PinholeCamera& camera) {
+    const ImageInput pair = load(frame, camera);
+    return Rectify(rectifier, frame.timestamp, pair.grey, pair.right);
+  };
+  sequence.load_colour = [rectifier, load = sequence.load_colour](const FramePaths& frame) {
+    return rectifier->RectifyLeft(load(frame));
+  };
+  FitMasks(rectifier, sequence);
+}
+
 void SplitHalves(Rectifier rectifier, ImageSequence& sequence) {
   sequence.load = [rectifier, load = sequence.load](const FramePaths& frame,
                                                     const PinholeCamera& camera) {

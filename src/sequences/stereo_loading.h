@@ -12,6 +12,9 @@ namespace hullslam {
 // `rectifier` is null for images that are rectified already.
 void LoadPairs(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);
 
+// Rectifies what the loaders of the sequence give.
+void RectifyPairs(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);
+
 // The images of the frames show both halves of a pair, the left one first. To be called for a
 // sequence whose loaders give such images.
 void SplitHalves(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);

@@ -4,17 +4,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "files/plausible.h"
 #include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "sequences/stereo_loading.h"
+#include "settings/rotation_matrix.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
@@ -66,6 +70,19 @@ VslamlabCamera ReadEntry(const YamlMap& entry) {
     result.depth_factor = entry.Number("depth_factor");
   }
   return result;
+}
+
+// The pose of a camera on the body. VSLAM-LAB has renamed its key.
+Rigid3 BodyFromCamera(const YamlMap& entry) {
+  const char* const key = entry.Has("T_SC") ? "T_SC" : "T_BS";
+  const std::vector<double> numbers = entry.Numbers(key, 16, "a 4x4 matrix by rows");
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+  const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());
+  if (!rotation) {
+    entry.Fail(key, "is no rotation and translation");
+  }
+  return {*rotation, matrix.topRightCorner<3, 1>()};
 }
 
 // ---- rgb.csv
@@ -137,6 +154,34 @@ VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name)
   const VslamlabCamera camera = ReadEntry(FindCamera(file, name));
   MakeSettings(camera.calibration, file.string());  // checks the numbers
   return camera;
+}
+
+VslamlabPair ReadVslamlabPair(const fs::path& file, const VslamlabPairNames& names) {
+  const YamlMap left = FindCamera(file, names[0]);
+  const YamlMap right = FindCamera(file, names[1]);
+  VslamlabPair pair{nullptr, ReadVslamlabCamera(file, names[0]).calibration};
+  const StereoCalibration calibration{
+      .left = pair.calibration.camera,
+      .right = ReadVslamlabCamera(file, names[1]).calibration.camera,
+      .right_from_left = Inverse(BodyFromCamera(right)) * BodyFromCamera(left)};
+  pair.rectifier = std::make_shared<const StereoRectifier>(
+      calibration,
+      fmt::format("{}: {} and {}", file.string(), ShowText(names[0]), ShowText(names[1])));
+  pair.calibration.camera = pair.rectifier->camera();
+  return pair;
+}
+
+VslamlabSequence OpenVslamlabPairs(const fs::path& folder, const fs::path& csv,
+                                   const VslamlabPairNames& names, const VslamlabPair& pair) {
+  VslamlabSequence sequence = OpenVslamlabSequence(folder, csv, names[0], names[1]);
+  for (FramePaths& frame : sequence.images.frames) {
+    frame.right = std::exchange(frame.depth, {});
+  }
+  sequence.images.dataset = "vslamlab_stereo";
+  sequence.images.choices.erase("depth_name");
+  sequence.images.choices["right_name"] = names[1];
+  LoadPairs(pair.rectifier, sequence.images);
+  return sequence;
 }
 
 VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& csv,

@@ -78,7 +78,7 @@ class SettingsInProgress {
   void ApplyCalibration(const CameraCalibration& calibration, const std::string& source);
   void ApplyOverrides();
   bool IsGiven(const std::string& key) const { return given_.contains(key); }
-  // What must come after all settings were set: follows the size of the image and validates the
+  // The steps after all settings were set: follows the size of the image and validates the
   // options.
   SystemOptions Finish(SettingsReport& report);
 

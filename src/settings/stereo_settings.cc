@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
 
 namespace hullslam {
@@ -22,16 +23,13 @@ std::vector<double> MatrixOf(const YamlMap& file, const std::string& key, size_t
   return file.Map(key).Numbers("data", count, "a matrix by rows");
 }
 
-Eigen::Quaterniond RotationOf(const YamlMap& file, const std::string& key,
+Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
                               const Eigen::Matrix3d& matrix) {
-  constexpr double kTolerance = 1e-3;  // files round their numbers
-  const bool is_rotation =
-      (matrix * matrix.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance) &&
-      matrix.determinant() > 0.0;
-  if (!is_rotation) {
+  const auto rotation = RotationOf(matrix);
+  if (!rotation) {
     file.Fail(key, "is no rotation");
   }
-  return Eigen::Quaterniond(matrix).normalized();
+  return *rotation;
 }
 
 // ---- ORB-SLAM2
@@ -53,7 +51,7 @@ PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
 
 Eigen::Quaterniond RectifyingRotation(const YamlMap& file, const std::string& key) {
   const std::vector<double> r = MatrixOf(file, key, 9);
-  return RotationOf(file, key,
+  return RotationIn(file, key,
                     Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data()));
 }
 
@@ -97,7 +95,7 @@ StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   const Eigen::Matrix4d left_from_right =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(t.data());
   pair.right_from_left =
-      Inverse(Rigid3{RotationOf(file, key, left_from_right.topLeftCorner<3, 3>()),
+      Inverse(Rigid3{RotationIn(file, key, left_from_right.topLeftCorner<3, 3>()),
                      left_from_right.topRightCorner<3, 1>()});
   return pair;
 }

@@ -37,7 +37,8 @@ TEST_P(ImageMessages, ACompressedImageIsRead) {
 }
 
 TEST_P(ImageMessages, ACameraIsRead) {
-  const std::string bytes = MadeCameraInfo(GetParam(), 64, 48, "plumb_bob", {0.1, 0.2, 0.3});
+  const std::string bytes =
+      MadeCameraInfo(GetParam(), 64, 48, "plumb_bob", {0.1, 0.2, 0.3}, 300.0, 0.1);
   const CameraInfoMessage camera = ReadCameraInfo(GetParam(), bytes, "m");
   EXPECT_EQ(camera.width, 64u);
   EXPECT_EQ(camera.height, 48u);
@@ -46,6 +47,8 @@ TEST_P(ImageMessages, ACameraIsRead) {
   EXPECT_EQ(camera.k[0], 300.0);
   EXPECT_EQ(camera.k[2], 31.5);
   EXPECT_EQ(camera.k[8], 1.0);
+  EXPECT_EQ(camera.r[4], 1.0);
+  EXPECT_EQ(camera.p[3], -30.0);
 }
 
 TEST_P(ImageMessages, EveryCutIsRefused) {
@@ -94,13 +97,17 @@ TEST(FoxgloveMessages, HaveTheContentOfThoseOfRos) {
   const std::string info = stamp + ProtobufNumber(2, uint32_t{64}) +
                            ProtobufNumber(3, uint32_t{48}) + ProtobufField(4, "plumb_bob") +
                            ProtobufField(5, numbers.bytes().substr(0, 40)) +
-                           ProtobufField(6, numbers.bytes());
+                           ProtobufField(6, numbers.bytes()) + ProtobufField(7, numbers.bytes()) +
+                           ProtobufField(8, numbers.bytes());
   const CameraInfoMessage camera = ReadCameraInfo(kProtobuf, info, "m");
   EXPECT_EQ(camera.width, 64u);
   EXPECT_EQ(camera.height, 48u);
   EXPECT_EQ(camera.distortion_model, "plumb_bob");
   EXPECT_EQ(camera.distortion, (std::vector<double>{10, 20, 30, 40, 50}));
   EXPECT_EQ(camera.k[8], 90.0);
+  EXPECT_EQ(camera.r[2], 30.0);
+  EXPECT_EQ(camera.p[8], 90.0);
+  EXPECT_EQ(camera.p[11], 0.0) << "the message has nine numbers";
 }
 
 TEST(BagContentTest, DependsOnTheTypeAndTheCoding) {

@@ -44,6 +44,7 @@ expect_fault(BAGS rgbd_tum desk --mcap out.mcap --output out)
 expect_fault(LIVE rgbd_tum desk --report --output out)
 expect_fault(EXPORTS hullslam export out --to ply --output out.ply)
 expect_fault(SCENE hullslam query out "cup")
+expect_fault(SEGMENTATION hullslam segment desk --network a.onnx --output masks)
 
 # The programs work: they render a short sequence, map its objects and write the results.
 run(${BUILD_DIR}-none/bin/make_synthetic ${WORK_DIR}/desk --frames 10 --quiet)

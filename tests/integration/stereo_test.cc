@@ -5,7 +5,10 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
+#include "sequences/named_images.h"
+#include "support/made_bags.h"
 #include "support/made_room.h"
 #include "support/mono_program.h"
 #include "support/test_data.h"
@@ -72,6 +75,44 @@ TEST_F(Stereo, WrongPairsAreRefusedBeforeTheFirstFrame) {
   fs::copy(fs::path(path_) / "left", fs::path(path_) / "right");
   ExpectRefusal({path_, "--settings", settings}, {path_, "the same image"});
   ExpectRefusal({path_, "--settings", WriteSettings(0.0)}, {"Camera.bf"});
+}
+
+class StereoBag : public Stereo {
+ protected:
+  StereoBag() : Stereo("stereo_bag") {}
+
+  // A recording of the room, whose right camera has this baseline in its CameraInfo.
+  std::string WriteBag(double baseline) {
+    room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+    const PinholeCamera& camera = room_.camera();
+    const auto width = static_cast<uint32_t>(camera.width);
+    const auto height = static_cast<uint32_t>(camera.height);
+    std::vector<MadeMessage> messages;
+    for (const std::string side : {"left", "right"}) {
+      uint64_t time = 1'000'000'000;
+      messages.push_back({"/" + side + "/camera_info", "sensor_msgs/CameraInfo", time,
+                          MadeCameraInfo(MessageCoding::kCdr, width, height, "plumb_bob", {},
+                                         camera.fx, side == "left" ? 0.0 : baseline)});
+      for (const fs::path& file : ListImages(fs::path(path_) / side)) {
+        const cv::Mat image = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+        messages.push_back({"/" + side + "/image", "sensor_msgs/Image", time,
+                            MadeImage(MessageCoding::kCdr, time, "mono8", width, height,
+                                      std::string(image.datastart, image.dataend))});
+        time += 100'000'000;
+      }
+    }
+    return folder_.Write("pairs.mcap", MadeMcap(messages, "zstd"));
+  }
+};
+
+TEST_F(StereoBag, TwoTopicsAreTrackedInMetres) {
+  const std::string bag = WriteBag(kBaseline);
+  const ProgramResult result = ExpectMapOf({bag});
+  ExpectParts(result.output, {"stereo: baseline 0.1200 m", "left images: /left/image",
+                              "cameras: /left/camera_info and /right/camera_info"});
+  EXPECT_NEAR(Scale(), 1.0, 0.01);
+  ExpectRefusal({bag, "--image-topic", "/right/image", "--right-topic", "/left/image"},
+                {bag, "left and right are swapped"});
 }
 
 class StereoEuroc : public Stereo {

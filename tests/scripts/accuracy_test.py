@@ -107,6 +107,27 @@ class AccuracyTest(unittest.TestCase):
         self.call_main("--accept")  # what is accepted is no error
         self.call_main()
 
+    def test_a_part_can_be_accepted(self):
+        self.call_main("--only", "desk,suite", "--accept")
+        self.behave("worse")
+        self.out = self.dir / "worse"
+        self.call_main("--only", "suite", "--accept")
+        runs = json.loads((self.dir / "docs" / "accuracy.json").read_text())["runs"]
+        self.assertAlmostEqual(runs["desk/rgbd/objects/seed-3"]["figures"]["ate_se3"], 0.013)
+        self.assertEqual({run["figures"]["ate_se3"] for run in runs.values() if run["case"] == "suite"},
+                         {0.03}, "three times the error")
+
+    def test_pairs_are_run_by_a_program_for_stereo_cameras(self):
+        self.cases.write_text(CASES + "  pairs: {recorded: desk, modes: [stereo], variants: [points]}\n")
+        _, told = self.call_main("--only", "pairs", code=2)
+        self.assertIn("nothing to run", told)
+        (self.desk / "right").mkdir()
+        self.call_main("--only", "pairs")
+        self.assertTrue(self.calls()[-1].startswith(f"stereo_folder {self.desk} "))
+        run = self.runs()["desk/stereo/points/seed-0"]
+        self.assertAlmostEqual(run["figures"]["ate_se3"], 0.01)
+        self.assertIsNotNone(run["figures"]["scale_error"])
+
     def test_another_report(self):
         self.run_script("--only", "suite")
         old = self.dir / "old.json"
@@ -162,7 +183,7 @@ class AccuracyTest(unittest.TestCase):
                                 (["--only", ""], "--only: '' is unknown"),
                                 (["--jobs", "0"], "--jobs is 0"),
                                 (["--timeout", "nan"], "--timeout"),
-                                (["--accept", "--quick"], "--accept needs all runs"),
+                                (["--accept", "--quick"], "--accept needs all runs of its cases"),
                                 (["--compare", self.cases], "not valid JSON"),
                                 (["--compare", self.dir / "none"], "cannot read"),
                                 (["--programs", self.dir, "--only", "desk"], "no such program")):

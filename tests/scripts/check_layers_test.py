@@ -4,21 +4,16 @@
 
 import pathlib
 import sys
-import tempfile
 import unittest
+
+from small_tree import faults_in
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import check_layers  # noqa: E402
 
 
 def faults_of(files):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for name, text in files.items():
-            path = root / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-        return check_layers.check_tree(root)
+    return faults_in(check_layers.check_tree, files)
 
 
 class CheckLayersTest(unittest.TestCase):

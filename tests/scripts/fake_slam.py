@@ -168,7 +168,7 @@ def write_programs(folder):
     """The replacements of all programs that scripts/reproduce_tables.py starts."""
     folder.mkdir(parents=True)
     renderer = MAKE_SYNTHETIC.replace("FOLDER", json.dumps(str(pathlib.Path(__file__).parent)))
-    for name, text in (("rgbd_tum", SLAM), ("mono_tum", SLAM), ("rgbd_icl", SLAM),
+    for name, text in (("rgbd_tum", SLAM), ("stereo_folder", SLAM), ("mono_tum", SLAM), ("rgbd_icl", SLAM),
                        ("mono_icl", SLAM), ("evaluate", EVALUATE), ("view", VIEW),
                        ("make_synthetic", renderer)):
         (folder / name).write_text(text)

@@ -250,5 +250,68 @@ TEST_F(BagSequenceTest, ACutRecordingIsUsedUpToTheCut) {
   EXPECT_NE(bag.warnings[0].find("cut off"), std::string::npos);
 }
 
+class BagPairsTest : public BagSequenceTest {
+ protected:
+  static MadeMessage Half(const std::string& side, int64_t stamp, int grey) {
+    MadeMessage message = Image(stamp, grey);
+    message.topic = "/" + side + "/image";
+    return message;
+  }
+  static MadeMessage HalfCamera(const std::string& side, double baseline) {
+    return {
+        "/" + side + "/camera_info", "sensor_msgs/CameraInfo", kStart,
+        MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {0, 0, 0, 0, 0}, 300.0, baseline)};
+  }
+  // Pairs 50 ms apart. The right image of the third one is missing.
+  static std::vector<MadeMessage> UsualPairs(double baseline = 0.1) {
+    std::vector<MadeMessage> messages = {HalfCamera("left", 0.0), HalfCamera("right", baseline)};
+    for (int i = 0; i < 4; ++i) {
+      messages.push_back(Half("left", 50'000'000 * i, 10 + i));
+      if (i != 2) {
+        messages.push_back(Half("right", 50'000'000 * i + 1'000'000, 20 + i));
+      }
+    }
+    return messages;
+  }
+  BagPairs OpenPairs(const std::vector<MadeMessage>& messages,
+                     const BagSequenceOptions& options = {}) const {
+    return OpenBagPairs(folder_.Write("a.mcap", MadeMcap(messages, "zstd")), options);
+  }
+};
+
+TEST_F(BagPairsTest, TwoTopicsArePairedByTheirStamps) {
+  const BagPairs bag = OpenPairs(UsualPairs());
+  ASSERT_EQ(bag.images.frames.size(), 3u);
+  ASSERT_TRUE(bag.calibration.has_value());
+  EXPECT_NEAR(bag.calibration->camera.bf, 30.0, 1e-9);
+  EXPECT_NEAR(bag.calibration->frames_per_second, 20.0, 1e-3);
+  const ImageInput pair = bag.images.load(bag.images.frames[2], bag.calibration->camera);
+  EXPECT_EQ(pair.grey.at<uint8_t>(9, 9), 13);
+  EXPECT_EQ(pair.right.at<uint8_t>(9, 9), 23);
+  EXPECT_TRUE(pair.depth.empty());
+  ASSERT_EQ(bag.warnings.size(), 1u);
+  EXPECT_NE(bag.warnings[0].find("1 of 4 images of /left/image"), std::string::npos);
+  EXPECT_EQ(bag.images.choices.at("right_topic"), "/right/image");
+}
+
+TEST_F(BagPairsTest, OtherSettingsNeedNoCamera) {
+  std::vector<MadeMessage> messages = UsualPairs();
+  messages.erase(messages.begin(), messages.begin() + 2);
+  EXPECT_EQ(OpenPairs(messages, {.need_camera = false}).images.frames.size(), 3u);
+  ExpectInputError([&] { OpenPairs(messages); }, {"a.mcap", "CameraInfo", "--settings"});
+}
+
+TEST_F(BagPairsTest, CamerasThatAreNoPairAreRefused) {
+  ExpectInputError([&] { OpenPairs(UsualPairs(0.0)); }, {"a.mcap: the baseline is 0 m"});
+  ExpectInputError([&] { OpenPairs(UsualPairs(-0.1)); }, {"left and right are swapped"});
+  std::vector<MadeMessage> late = UsualPairs();
+  for (MadeMessage& message : late) {
+    if (message.topic == "/right/image") {
+      message = Half("right", static_cast<int64_t>(message.time - kStart) + 20'000'000, 1);
+    }
+  }
+  ExpectInputError([&] { OpenPairs(late); }, {"a.mcap: 0 of 4 images of /left/image"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/expect_error.h"
@@ -55,6 +56,40 @@ TEST(BagTopicsTest, OfSeveralTopicsTheRawAndTheNamedOneIsTaken) {
   EXPECT_EQ(DepthOfTopics({Depth("/cam/depth/image"), Depth("/cam/aligned_depth_to_color/image")}),
             "/cam/aligned_depth_to_color/image");
   EXPECT_EQ(ColourOfTopics({Colour("/left"), Colour("/right")}, "/right"), "/right");
+}
+
+std::string PairOfTopics(std::vector<IndexedTopic> topics, const std::string& left = "",
+                         const std::string& right = "") {
+  const BagIndex index{"a.bag", std::move(topics)};
+  const auto pair = ChoosePairTopics(index, left, right, "--image-topic", "--right-topic");
+  return pair[0]->name + " " + pair[1]->name;
+}
+
+TEST(BagTopicsTest, ThePairDiffersByOneWord) {
+  EXPECT_EQ(PairOfTopics({Colour("/z/left/image"), Colour("/z/right/image"), Colour("/rgb"),
+                          Depth("/z/left/depth")}),
+            "/z/left/image /z/right/image");
+  EXPECT_EQ(PairOfTopics({Colour("/infra1/image"), Colour("/infra2/image")}),
+            "/infra1/image /infra2/image");
+  EXPECT_EQ(PairOfTopics({Colour("/cam0/image_raw"), Colour("/cam0/image_raw/compressed", true),
+                          Colour("/cam1/image_raw"), Colour("/cam1/image_raw/compressed", true)}),
+            "/cam0/image_raw /cam1/image_raw");
+  EXPECT_EQ(PairOfTopics({Colour("/left/raw"), Colour("/right/raw"), Colour("/left/image_rect"),
+                          Colour("/right/image_rect")}),
+            "/left/image_rect /right/image_rect");
+}
+
+TEST(BagTopicsTest, ThePairCanBeNamed) {
+  const std::vector<IndexedTopic> topics = {Colour("/left/a"), Colour("/left/b"), Colour("/other"),
+                                            Colour("/right/a"), Colour("/right/b")};
+  EXPECT_EQ(PairOfTopics(topics, "/left/b"), "/left/b /right/b");
+  EXPECT_EQ(PairOfTopics(topics, "", "/right/a"), "/left/a /right/a");
+  EXPECT_EQ(PairOfTopics(topics, "/left/b", "/other"), "/left/b /other");
+  ExpectInputError(
+      [&] { PairOfTopics(topics); },
+      {"a.bag: has 2 pairs of topics", "--image-topic TOPIC and --right-topic TOPIC", "/left/a"});
+  ExpectInputError([&] { PairOfTopics(topics, "/other"); }, {"has 0 pairs"});
+  ExpectInputError([&] { PairOfTopics(topics, "/other", "/other"); }, {"has 0 pairs"});
 }
 
 // mono16 is the depth of some cameras, and the image of others.

@@ -88,7 +88,7 @@ TEST(RunSequence, OfAnUnknownDataSetIsRefused) {
                    {"gone", "does not say of which data set", "repeat the run"});
   ExpectInputError(
       [&] { OpenRunSequence({.path = {}, .dataset = "kinect"}, folder.path(), MadeCamera()); },
-      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, video, vslamlab"});
+      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, bag_stereo, video, vslamlab"});
 }
 
 }  // namespace

@@ -125,5 +125,45 @@ TEST_F(VslamlabSequenceTest, RefusesBrokenLists) {
   ExpectInputError([&] { Open(ReplaceIn(kList, "rgb_0/b.png", "rgb_0/none.png")); }, {"none.png"});
 }
 
+// Two cameras 0.1 m apart; `right` is the pose of the right one on the body.
+std::string Pair(const std::string& right) {
+  const std::string camera =
+      "cam_model: pinhole, focal_length: [400, 400], principal_point: [319.5, 239.5], "
+      "image_dimension: [640, 480], fps: 20, ";
+  return "cameras:\n- {cam_name: l, " + camera +
+         "T_SC: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n- {cam_name: r, " + camera +
+         right + "}\n";
+}
+
+TEST_F(VslamlabSequenceTest, ReadsPairs) {
+  const std::string right = "T_BS: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
+  const VslamlabPair pair = ReadVslamlabPair(folder_.Write("c.yaml", Pair(right)), {"l", "r"});
+  EXPECT_NEAR(pair.calibration.camera.bf, 40.0, 1e-9);
+  EXPECT_EQ(pair.calibration.frames_per_second, 20.0);
+  const auto list = folder_.Write(
+      "rgb.csv",
+      "ts_l (ns),path_l,ts_r (ns),path_r\n1000000000,rgb_0/b.png,1000000000,depth_0/b.png\n");
+  const VslamlabSequence sequence = OpenVslamlabPairs(folder_.path(), list, {"l", "r"}, pair);
+  ASSERT_EQ(sequence.images.frames.size(), 1u);
+  EXPECT_EQ(sequence.images.frames[0].right, folder_.path() / "depth_0/b.png");
+  EXPECT_TRUE(sequence.images.frames[0].depth.empty());
+  EXPECT_EQ(sequence.images.choices.at("right_name"), "r");
+}
+
+TEST_F(VslamlabSequenceTest, RefusesCamerasThatAreNoPair) {
+  const auto expect = [&](const std::string& right, const std::vector<std::string>& parts) {
+    ExpectInputError(
+        [&] {
+          ReadVslamlabPair(folder_.Write("c.yaml", Pair(right)), {"l", "r"});
+        },
+        parts);
+  };
+  expect("T_BS: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"l and r", "baseline is 0 m"});
+  expect("T_BS: [1, 0, 0, -0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"swapped"});
+  expect("T_BS: [2, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"T_BS is no rotation"});
+  expect("T_BS: [1, 0]", {"T_BS"});
+  expect("cam_type: grey", {"T_BS is not given"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -33,6 +33,7 @@ TEST_F(YamlMaps, GiveTextsNumbersListsAndMaps) {
   EXPECT_TRUE(map.Has("fps"));
   EXPECT_FALSE(map.Has("FPS"));
   EXPECT_EQ(map.Pixels("size", 640.0), 640);
+  EXPECT_EQ(map.Texts("size", 2, "a b"), (std::vector<std::string>{"640", "480"}));
 }
 
 TEST_F(YamlMaps, WhatIsMissingOrOfAnotherKindIsNamedWithItsLine) {
@@ -45,6 +46,8 @@ TEST_F(YamlMaps, WhatIsMissingOrOfAnotherKindIsNamedWithItsLine) {
   ExpectInputError([&] { map.Numbers("size", 2, "w h"); }, {"c.yaml:3: size", "'wide'"});
   ExpectInputError([&] { map.Numbers("size", 3, "a b c"); }, {"2 value(s), expected 3", "a b c"});
   ExpectInputError([&] { map.Numbers("fps", 3, "a b c"); }, {"1 value(s), expected 3"});
+  ExpectInputError([&] { map.Texts("size", 3, "a b c"); }, {"c.yaml:3: size", "list of 3: a b c"});
+  ExpectInputError([&] { map.Texts("fps", 2, "a b"); }, {"c.yaml:2: fps is not a list of 2"});
   ExpectInputError([&] { map.Number("big"); }, {"c.yaml:5: big", "reasonable size"});
   ExpectInputError([&] { map.Number("nan"); }, {"c.yaml:6: nan"});
   ExpectInputError([&] { map.Map("model"); }, {"c.yaml:1: model is not a map"});

@@ -106,11 +106,12 @@ inline std::string MadeCompressed(MessageCoding coding, uint64_t time, std::stri
   return fields.Message();
 }
 
-// A sensor_msgs/CameraInfo with fx = fy = 300 and the principal point in the middle.
+// A sensor_msgs/CameraInfo with fx = fy = 300 and the principal point in the middle. It is
+// rectified and, if `baseline` (m) is not 0, the right camera of a pair.
 inline std::string MadeCameraInfo(MessageCoding coding, uint32_t width, uint32_t height,
                                   std::string_view model = "plumb_bob",
                                   const std::vector<double>& distortion = {0, 0, 0, 0, 0},
-                                  double focal_length = 300.0) {
+                                  double focal_length = 300.0, double baseline = 0.0) {
   MadeFields fields(coding);
   fields.PutHeader(0);
   fields.Put(height);
@@ -124,8 +125,12 @@ inline std::string MadeCameraInfo(MessageCoding coding, uint32_t width, uint32_t
                               0.5 * (height - 1), 0.0, 0.0, 1.0}) {
     fields.Put(number);
   }
-  for (int i = 0; i < 21; ++i) {  // R and P, which are not used
-    fields.Put(0.0);
+  for (const double number : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) {
+    fields.Put(number);
+  }
+  for (const double number : {focal_length, 0.0, 0.5 * (width - 1), -baseline * focal_length, 0.0,
+                              focal_length, 0.5 * (height - 1), 0.0, 0.0, 0.0, 1.0, 0.0}) {
+    fields.Put(number);
   }
   return fields.Message();
 }

@@ -21,7 +21,7 @@ std::string FaultOf(std::string_view component) {
 
 // Tests are built with all components (the folder tests/components builds without them).
 TEST(Components, AllOfThisBuildAreThere) {
-  for (const char* name : {"VIDEO", "BAGS", "LIVE", "EXPORTS", "SCENE"}) {
+  for (const char* name : {"VIDEO", "BAGS", "LIVE", "EXPORTS", "SCENE", "SEGMENTATION"}) {
     EXPECT_EQ(FaultOf(name), "") << name;
   }
 }

@@ -127,7 +127,7 @@ void AddStatus(const SceneObject& object, nlohmann::ordered_json& entry) {
   }
 }
 
-// What stands on what, and the supports that no object is (floors and tables).
+// The supports of objects, also those that are no objects (floors and tables).
 void AddRelations(const Scene& scene, nlohmann::ordered_json& file) {
   file["supports"] = nlohmann::ordered_json::array();
   for (const Support& support : scene.supports) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "hullslam/frame/stereo_rectifier.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
 
@@ -16,6 +18,9 @@ struct BagSequenceOptions {
   std::string image_topic = {};
   std::string depth_topic = {};
   std::string info_topic = {};
+  // Only for OpenBagPairs, whose left images are those of `image_topic`.
+  std::string right_topic = {};
+  std::string right_info_topic = {};
   // False for monocular SLAM: all images are frames, and no frame has depth.
   bool use_depth = true;
   // False if the settings of the camera are known: then no CameraInfo is needed.
@@ -47,5 +52,21 @@ struct BagSequence {
 // back by more than a second.
 BagSequence OpenBagSequence(const std::filesystem::path& path,
                             const BagSequenceOptions& options = {});
+
+struct BagPairs {
+  ImageSequence images;
+  // Of the rectified images, with the baseline. Absent without `need_camera`.
+  std::optional<CameraCalibration> calibration;
+  std::vector<std::string> notes;  // as in BagSequence
+  std::vector<std::string> warnings;
+};
+
+// Opens a recording with two topics of images of a stereo camera as OpenBagSequence does. Pairs are
+// one to one, within a twentieth of the time between two images; images without a partner are
+// counted in a warning. With `need_camera`, the images are rectified by the two CameraInfo, unless
+// the name of their topic says that they are rectified already; else by `rectifier`, which is null
+// for rectified images.
+BagPairs OpenBagPairs(const std::filesystem::path& path, const BagSequenceOptions& options = {},
+                      std::shared_ptr<const StereoRectifier> rectifier = nullptr);
 
 }  // namespace hullslam

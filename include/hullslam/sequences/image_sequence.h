@@ -51,7 +51,7 @@ struct ImageSequence {
   // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
   // run.
   std::optional<Trajectory> converted_groundtruth;
-  // What the user should know of faults in the files that do not end a run.
+  // Messages for the user about faults in the files that do not end a run.
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};

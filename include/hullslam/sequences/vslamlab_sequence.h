@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "hullslam/frame/stereo_rectifier.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
 
@@ -27,6 +30,18 @@ struct VslamlabCamera {
 // `depth_factor`. Throws InputError with the file and the key.
 VslamlabCamera ReadVslamlabCamera(const std::filesystem::path& file, const std::string& name);
 
+// The names of the left and the right camera.
+using VslamlabPairNames = std::array<std::string, 2>;
+
+// Reads a stereo camera: both cameras as ReadVslamlabCamera does, with their poses on the body, 16
+// numbers by rows in `T_SC` or `T_BS`. Without distortion and rotation between them, their images
+// are taken as they are. Throws InputError also for cameras that are no pair (StereoRectifier).
+struct VslamlabPair {
+  std::shared_ptr<const StereoRectifier> rectifier;
+  CameraCalibration calibration;  // of the rectified images
+};
+VslamlabPair ReadVslamlabPair(const std::filesystem::path& file, const VslamlabPairNames& names);
+
 struct VslamlabSequence {
   ImageSequence images;
   std::vector<int64_t> stamps;  // ns, of each frame of `images` as in the file
@@ -39,5 +54,10 @@ struct VslamlabSequence {
 VslamlabSequence OpenVslamlabSequence(const std::filesystem::path& folder,
                                       const std::filesystem::path& csv,
                                       const std::string& image_name, const std::string& depth_name);
+
+// The same for the two images of a stereo camera, which are rectified when they are loaded.
+VslamlabSequence OpenVslamlabPairs(const std::filesystem::path& folder,
+                                   const std::filesystem::path& csv, const VslamlabPairNames& names,
+                                   const VslamlabPair& pair);
 
 }  // namespace hullslam

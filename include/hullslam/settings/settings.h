@@ -32,7 +32,7 @@ SystemOptions ReadSettings(const std::filesystem::path& file,
                            NegativeFy negative_fy = NegativeFy::kError,
                            std::vector<std::string>* warnings = nullptr);
 
-// What is set beside the settings file of a camera, in the order preset, file, overrides.
+// The settings beside the settings file of a camera, in the order preset, file, overrides.
 struct SettingsSources {
   const Preset* preset = nullptr;               // null: none
   std::span<const std::string> overrides = {};  // key=value
@@ -48,7 +48,7 @@ struct PresetOverride {
   std::string origin;  // FILE:LINE of the settings file, the name of a calibration, or --set
 };
 
-// What a user should be told about the settings.
+// Messages for the user about the settings.
 struct SettingsReport {
   std::vector<std::string> warnings;             // also one per override by a file or a calibration
   std::vector<PresetOverride> preset_overrides;  // sorted by key

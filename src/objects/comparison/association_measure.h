@@ -14,7 +14,7 @@
 
 namespace hullslam {
 
-// What a detection and an object are compared by. The references must outlive this struct.
+// The input of a comparison of a detection and an object. The references must outlive this struct.
 struct MatchEvidence {
   const Detection& detection;
   const ObjectLandmark& object;

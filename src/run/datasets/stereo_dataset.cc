@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "frame/pair_check.h"
+#include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/util/error.h"
@@ -19,30 +22,15 @@
 namespace hullslam {
 namespace {
 
-// Throws InputError for pairs that cannot be used: swapped, twice the same image, not rectified.
-void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence,
-                const PinholeCamera& camera) {
-  constexpr size_t kPairs = 3;
-  PairCheck check;
-  for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
-    const ImageInput pair =
-        sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
-    check.Add(pair.grey, pair.right);
-  }
-  if (const auto fault = check.FindFault()) {
-    throw InputError(path.string() + ": " + *fault);
-  }
-}
-
 std::string DescribeCamera(const PinholeCamera& camera) {
   return fmt::format("stereo: baseline {:.4f} m, focal length {:.1f} px in the rectified images",
                      camera.bf / camera.fx, camera.fx);
 }
 
 DatasetInput Finish(const RunArguments& arguments, LoadedSettings settings, ImageSequence sequence,
-                    std::string note) {
+                    std::vector<std::string> notes) {
   CheckPairs(arguments.sequence, sequence, settings.options.camera);
-  std::vector<std::string> notes = {std::move(note), DescribeCamera(settings.options.camera)};
+  notes.push_back(DescribeCamera(settings.options.camera));
   if (!sequence.stamps_note.empty()) {
     notes.push_back(sequence.stamps_note);
   }
@@ -69,7 +57,7 @@ class CalibratedPairs final : public Dataset {
             : LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
     settings.options.camera = own.camera;  // the images are rectified to this camera
     const std::string note = Describe({source_, "the cameras of the sequence"});
-    return Finish(arguments, std::move(settings), std::move(sequence.images), note);
+    return Finish(arguments, std::move(settings), std::move(sequence.images), {note});
   }
 
  private:
@@ -115,11 +103,87 @@ class StereoFolder final : public Dataset {
       sequence.choices["calibration"] = std::filesystem::absolute(file).string();
     }
     return Finish(arguments, std::move(settings), std::move(sequence),
-                  Describe(GivenSettings(file)));
+                  {Describe(GivenSettings(file))});
   }
 };
 
+class StereoBag final : public Dataset {
+ public:
+  DatasetHelp Help(SensorKind /*sensor*/) const override {
+    return {.sequence =
+                "recording of ROS with two topics of images: an MCAP file, a .db3 file or a "
+                "folder of rosbag2, or a bag of ROS 1",
+            .settings = "default: the cameras of the two CameraInfo of the recording",
+            .groundtruth = "default: none"};
+  }
+
+  void AddOptions(CLI::App& app) override {
+    app.add_option(
+           "--image-topic", options_.image_topic,
+           "topic of the left images (default: of the topics whose names differ by left and "
+           "right, infra1 and infra2, cam0 and cam1)")
+        ->type_name("TOPIC");
+    app.add_option("--right-topic", options_.right_topic,
+                   "topic of the right images (default: likewise)")
+        ->type_name("TOPIC");
+    app.add_option("--info-topic", options_.info_topic,
+                   "topic of the left camera (default: camera_info beside the images)")
+        ->type_name("TOPIC");
+    app.add_option("--right-info-topic", options_.right_info_topic,
+                   "topic of the right camera (default: likewise)")
+        ->type_name("TOPIC");
+    app.add_flag("--recording-times", options_.use_recording_times,
+                 "take the times at which the messages were recorded, not the stamps in them");
+  }
+
+  DatasetInput Open(const RunArguments& arguments) override {
+    options_.need_camera = arguments.settings.empty();
+    options_.selection = arguments.selection;
+    std::optional<LoadedSettings> given;
+    std::shared_ptr<const StereoRectifier> rectifier;
+    if (!options_.need_camera) {
+      given = LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
+      rectifier = MakeRectifier(arguments.settings, given->options.camera);
+    }
+    BagPairs bag = OpenBagPairs(arguments.sequence, options_, rectifier);
+    for (const std::string& warning : bag.warnings) {
+      PrintError("warning: {}\n", warning);
+    }
+    if (!given) {
+      given = LoadSettings(*bag.calibration, arguments.sequence.string(), arguments.preset,
+                           arguments.overrides);
+      given->options.camera = bag.calibration->camera;  // the images are rectified to this camera
+    } else {
+      bag.notes.push_back(Describe(GivenSettings(arguments.settings)));
+    }
+    if (rectifier != nullptr) {
+      given->options.camera = rectifier->camera();
+      bag.images.choices["calibration"] = std::filesystem::absolute(arguments.settings).string();
+    }
+    return Finish(arguments, std::move(*given), std::move(bag.images), std::move(bag.notes));
+  }
+
+ private:
+  BagSequenceOptions options_;
+};
+
 }  // namespace
+
+void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence,
+                const PinholeCamera& camera) {
+  constexpr size_t kPairs = 3;
+  PairCheck check;
+  for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
+    const ImageInput pair =
+        sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
+    check.Add(pair.grey, pair.right);
+  }
+  if (const auto fault = check.FindFault()) {
+    throw InputError(path.string() + ": " + *fault);
+  }
+}
+
+std::unique_ptr<Dataset> MakeStereoBagDataset() { return std::make_unique<StereoBag>(); }
 
 std::unique_ptr<Dataset> MakeEurocStereoDataset() {
   return std::make_unique<CalibratedPairs>(

@@ -6,7 +6,7 @@
 namespace hullslam {
 
 std::unique_ptr<Network> OpenNetwork(std::string_view /*bytes*/) {
-  RequireComponent("SEGMENTATION", "a network was to make masks");
+  RequireComponent("SEGMENTATION", "masks are to be made");
   return nullptr;
 }
 
