@@ -35,7 +35,7 @@ struct Entry {
   std::string_view why = {};
 };
 
-constexpr std::array<Entry, 22> kEntries = {{
+constexpr std::array<Entry, 26> kEntries = {{
     {"File.version", Kind::kVersion},
     {"Camera.type", Kind::kModel},
     {"Camera1.fx", Kind::kRenamed, "Camera.fx"},
@@ -57,6 +57,11 @@ constexpr std::array<Entry, 22> kEntries = {{
     {"System.LoadAtlasFromFile", Kind::kRefused, {}, "HullSLAM cannot load maps of ORB-SLAM3"},
     {"System.SaveAtlasToFile", Kind::kRefused, {}, "HullSLAM cannot save maps of ORB-SLAM3"},
     {"Viewer.imageViewScale", Kind::kIgnored},
+    // Where the images of a fisheye pair overlap. They are rectified here.
+    {"Camera1.overlappingBegin", Kind::kIgnored},
+    {"Camera1.overlappingEnd", Kind::kIgnored},
+    {"Camera2.overlappingBegin", Kind::kIgnored},
+    {"Camera2.overlappingEnd", Kind::kIgnored},
     {"loopClosing", Kind::kRenamed, "loop.closing"},
 }};
 
