@@ -108,7 +108,8 @@ class AccuracyTest(unittest.TestCase):
         self.call_main()
 
     def test_a_part_can_be_accepted(self):
-        self.call_main("--only", "desk,suite", "--accept")
+        self.call_main("--only", "desk", "--accept")
+        self.call_main("--only", "suite", "--accept")  # a new case
         self.behave("worse")
         self.out = self.dir / "worse"
         self.call_main("--only", "suite", "--accept")
