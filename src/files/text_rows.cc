@@ -127,15 +127,11 @@ double TextRow::Stamp(size_t column, std::string_view name) const {
 
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit, size_t most_bytes) {
-  const std::string bytes = ReadText(path, most_bytes);
-  const std::string_view text = bytes;
+  const std::string text = ReadText(path, most_bytes);
   TextRow row{.path = path, .line = 0, .columns = {}};
   bool is_first = true;  // no line with data or with names has come yet
   int names = 0;         // the line with the names, until data follow; then 0
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
+  for (const std::string_view line : LinesOf(text)) {
     ++row.line;
     CheckLine(row, line);
     SplitColumns(line, row.columns);

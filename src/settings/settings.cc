@@ -26,6 +26,7 @@
 #include "settings/stereo_settings.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
+#include "util/lower_case.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
 
@@ -222,8 +223,7 @@ SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
 // The number of the TUM camera in a name, such as "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 if
 // there is none.
 int TumCamera(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  name = LowerCase(name);
   for (const std::string_view mark : {"freiburg", "fr"}) {
     const size_t at = name.find(mark);
     const size_t digit = at + mark.size();

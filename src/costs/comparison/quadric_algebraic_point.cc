@@ -10,36 +10,19 @@ namespace hullslam {
 
 AlgebraicPointCost::AlgebraicPointCost(const PinholeCamera& camera,
                                        std::span<const Eigen::Vector2d> contour, double sigma)
-    : ObjectCost(contour.size()),
-      camera_(camera),
-      contour_(contour.begin(), contour.end()),
-      inverse_sigma_(1.0 / sigma) {}
+    : EllipseCost(contour.size(), camera, sigma), contour_(contour.begin(), contour.end()) {}
 
-bool AlgebraicPointCost::Evaluate(double const* const* parameters, double* residuals,
-                                  double** jacobians) const {
-  const QuadricInCamera quadric(parameters);
-  if (!quadric.IsInFront()) {
-    return false;
-  }
-  EllipseProjection ellipse(camera_, quadric);
-  if (!ellipse.HasArea()) {
-    return false;
-  }
-  if (jacobians != nullptr) {
-    ellipse.Linearize();
-  }
-  const Eigen::Matrix2d inverse_shape = ellipse.shape().inverse();
+void AlgebraicPointCost::Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+                                 std::span<ByEllipse> by_ellipse) const {
+  const Eigen::Matrix2d inverse_shape = ToEllipse(ellipse).shape.inverse();
   for (size_t i = 0; i < contour_.size(); ++i) {
-    const Eigen::Vector2d from_center = contour_[i] - ellipse.center();
+    const Eigen::Vector2d from_center = contour_[i] - ellipse.head<2>();
     const Eigen::Vector2d y = inverse_shape * from_center;
-    residuals[i] = inverse_sigma_ * (from_center.dot(y) - 1.0);
-    if (jacobians != nullptr) {
-      ByEllipse by_ellipse;
-      by_ellipse << -2.0 * y.transpose(), -y.x() * y.x(), -2.0 * y.x() * y.y(), -y.y() * y.y();
-      ellipse.WriteRow(static_cast<int>(i), inverse_sigma_ * by_ellipse, jacobians);
+    residuals[i] = from_center.dot(y) - 1.0;
+    if (!by_ellipse.empty()) {
+      by_ellipse[i] << -2.0 * y.transpose(), -y.x() * y.x(), -2.0 * y.x() * y.y(), -y.y() * y.y();
     }
   }
-  return true;
 }
 
 std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contour,

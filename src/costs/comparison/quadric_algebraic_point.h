@@ -15,18 +15,16 @@ namespace hullslam {
 // zero on the projected ellipse. It has no unit, nor has sigma. Parameters: those of
 // QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
 // ellipse has an area.
-class AlgebraicPointCost final : public ObjectCost {
+class AlgebraicPointCost final : public EllipseCost {
  public:
   AlgebraicPointCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> contour,
                      double sigma);
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
  private:
-  PinholeCamera camera_;
+  void Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+               std::span<ByEllipse> by_ellipse) const override;
+
   std::vector<Eigen::Vector2d> contour_;
-  double inverse_sigma_;
 };
 
 // The contour points that pass a chi-square test with one degree of freedom (5 %): error^2 is at

@@ -142,33 +142,17 @@ BoxBound ClippedBound(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& 
 
 BoxBoundsCost::BoxBoundsCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box,
                              const std::array<bool, 4>& is_cut, double sigma)
-    : ObjectCost(kSides.size()),
-      camera_(camera),
-      box_(box),
-      is_cut_(is_cut),
-      inverse_sigma_(1.0 / sigma) {}
+    : EllipseCost(kSides.size(), camera, sigma), box_(box), is_cut_(is_cut) {}
 
-bool BoxBoundsCost::Evaluate(double const* const* parameters, double* residuals,
-                             double** jacobians) const {
-  const QuadricInCamera quadric(parameters);
-  if (!quadric.IsInFront()) {
-    return false;
-  }
-  EllipseProjection ellipse(camera_, quadric);
-  if (!ellipse.HasArea()) {
-    return false;
-  }
-  if (jacobians != nullptr) {
-    ellipse.Linearize();
-  }
+void BoxBoundsCost::Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+                            std::span<ByEllipse> by_ellipse) const {
   for (const BoxSide side : kSides) {
-    const BoxBound bound = ClippedBound(ellipse.numbers(), box_, is_cut_, side);
-    residuals[side] = inverse_sigma_ * (bound.value - PositionOf(box_, side));
-    if (jacobians != nullptr) {
-      ellipse.WriteRow(side, inverse_sigma_ * bound.by_ellipse, jacobians);
+    const BoxBound bound = ClippedBound(ellipse, box_, is_cut_, side);
+    residuals[side] = bound.value - PositionOf(box_, side);
+    if (!by_ellipse.empty()) {
+      by_ellipse[side] = bound.by_ellipse;
     }
   }
-  return true;
 }
 
 namespace {

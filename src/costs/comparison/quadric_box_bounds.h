@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <span>
 
 #include "costs/ellipse_projection.h"
 #include "costs/residual_kind.h"
@@ -30,19 +31,17 @@ BoxBound ClippedBound(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& 
 // Where the border of the image cuts the detection, the projected ellipse is cut there too.
 // Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera
 // and its projected ellipse has an area.
-class BoxBoundsCost final : public ObjectCost {
+class BoxBoundsCost final : public EllipseCost {
  public:
   BoxBoundsCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box,
                 const std::array<bool, 4>& is_cut, double sigma);
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
  private:
-  PinholeCamera camera_;
+  void Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+               std::span<ByEllipse> by_ellipse) const override;
+
   Eigen::AlignedBox2d box_;
   std::array<bool, 4> is_cut_;
-  double inverse_sigma_;
 };
 
 extern const ResidualKind kBoxBoundsResidual;

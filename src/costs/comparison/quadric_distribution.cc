@@ -49,33 +49,17 @@ double SquaredWasserstein(const Ellipse& a, const Ellipse& b) {
 
 DistributionCost::DistributionCost(const PinholeCamera& camera, const Ellipse& measured,
                                    double sigma, DistributionDistance distance)
-    : ObjectCost(1),
-      camera_(camera),
-      measured_(measured),
-      inverse_sigma_(1.0 / sigma),
-      distance_(distance) {}
+    : EllipseCost(1, camera, sigma), measured_(measured), distance_(distance) {}
 
-bool DistributionCost::Evaluate(double const* const* parameters, double* residuals,
-                                double** jacobians) const {
-  const QuadricInCamera quadric(parameters);
-  if (!quadric.IsInFront()) {
-    return false;
+void DistributionCost::Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+                               std::span<ByEllipse> by_ellipse) const {
+  const auto distance =
+      distance_ == DistributionDistance::kWasserstein ? Wasserstein : Bhattacharyya;
+  ByEllipse derivative;
+  residuals[0] = distance(ToEllipse(ellipse), measured_, derivative);
+  if (!by_ellipse.empty()) {
+    by_ellipse[0] = derivative;
   }
-  EllipseProjection projection(camera_, quadric);
-  if (!projection.HasArea()) {
-    return false;
-  }
-  const Ellipse ellipse = ToEllipse(projection.numbers());
-  ByEllipse by_ellipse;
-  const double distance = distance_ == DistributionDistance::kWasserstein
-                              ? Wasserstein(ellipse, measured_, by_ellipse)
-                              : Bhattacharyya(ellipse, measured_, by_ellipse);
-  residuals[0] = inverse_sigma_ * distance;
-  if (jacobians != nullptr) {
-    projection.Linearize();
-    projection.WriteRow(0, inverse_sigma_ * by_ellipse, jacobians);
-  }
-  return true;
 }
 
 namespace {

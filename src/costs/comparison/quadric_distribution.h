@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+
 #include "costs/ellipse_projection.h"
 #include "costs/residual_kind.h"
 
@@ -17,18 +19,16 @@ enum class DistributionDistance { kWasserstein, kBhattacharyya };
 //     (m1 - m2)^T S^-1 (m1 - m2) / 8 + ln(det S / sqrt(det S1 det S2)) / 2
 // Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera
 // and its projected ellipse has an area.
-class DistributionCost final : public ObjectCost {
+class DistributionCost final : public EllipseCost {
  public:
   DistributionCost(const PinholeCamera& camera, const Ellipse& measured, double sigma,
                    DistributionDistance distance = DistributionDistance::kWasserstein);
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
  private:
-  PinholeCamera camera_;
+  void Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+               std::span<ByEllipse> by_ellipse) const override;
+
   Ellipse measured_;
-  double inverse_sigma_;
   DistributionDistance distance_;
 };
 

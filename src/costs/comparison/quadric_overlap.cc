@@ -151,36 +151,23 @@ Overlap BoxOverlap(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box
 
 OverlapCost::OverlapCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> region,
                          double sigma)
-    : ObjectCost(1),
-      camera_(camera),
-      region_(region.begin(), region.end()),
-      inverse_sigma_(1.0 / sigma) {
+    : EllipseCost(1, camera, sigma), region_(region.begin(), region.end()) {
   if (SignedArea(region_) < 0.0) {
     std::reverse(region_.begin(), region_.end());
   }
 }
 
 OverlapCost::OverlapCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box, double sigma)
-    : ObjectCost(1), camera_(camera), box_(box), inverse_sigma_(1.0 / sigma) {}
+    : EllipseCost(1, camera, sigma), box_(box) {}
 
-bool OverlapCost::Evaluate(double const* const* parameters, double* residuals,
-                           double** jacobians) const {
-  const QuadricInCamera quadric(parameters);
-  if (!quadric.IsInFront()) {
-    return false;
+void OverlapCost::Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+                          std::span<ByEllipse> by_ellipse) const {
+  const Overlap overlap =
+      region_.empty() ? BoxOverlap(ellipse, box_) : EllipseOverlap(ellipse, region_);
+  residuals[0] = 1.0 - overlap.iou;
+  if (!by_ellipse.empty()) {
+    by_ellipse[0] = -overlap.by_ellipse;
   }
-  EllipseProjection ellipse(camera_, quadric);
-  if (!ellipse.HasArea()) {
-    return false;
-  }
-  const Overlap overlap = region_.empty() ? BoxOverlap(ellipse.numbers(), box_)
-                                          : EllipseOverlap(ellipse.numbers(), region_);
-  residuals[0] = inverse_sigma_ * (1.0 - overlap.iou);
-  if (jacobians != nullptr) {
-    ellipse.Linearize();
-    ellipse.WriteRow(0, -inverse_sigma_ * overlap.by_ellipse, jacobians);
-  }
-  return true;
 }
 
 namespace {

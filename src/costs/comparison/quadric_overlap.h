@@ -27,20 +27,18 @@ Overlap BoxOverlap(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box
 // the projected ellipse with the region, or that of its bounding box with a box. Parameters: those
 // of QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
 // ellipse has an area.
-class OverlapCost final : public ObjectCost {
+class OverlapCost final : public EllipseCost {
  public:
   // The polygon may have either orientation.
   OverlapCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> region, double sigma);
   OverlapCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box, double sigma);
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
  private:
-  PinholeCamera camera_;
+  void Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+               std::span<ByEllipse> by_ellipse) const override;
+
   std::vector<Eigen::Vector2d> region_;  // empty: the box is used
   Eigen::AlignedBox2d box_;
-  double inverse_sigma_;
 };
 
 extern const ResidualKind kOverlapResidual;
