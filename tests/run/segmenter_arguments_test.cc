@@ -38,10 +38,11 @@ class SegmentCommand : public testing::Test {
     network_ = folder_.Write("network.onnx", MadeNetwork().Bytes());
   }
 
-  int Run(const std::vector<std::string>& more = {}, const std::string& output = "masks") {
+  int Run(const std::vector<std::string>& more = {}, const std::string& output = "masks",
+          const std::string& input = "images") {
     std::vector<std::string> words = {
-        "segment",  (folder_.path() / "images").string(), "--network", network_.string(),
-        "--output", (folder_.path() / output).string(),   "--quiet"};
+        "segment",  (folder_.path() / input).string(),  "--network", network_.string(),
+        "--output", (folder_.path() / output).string(), "--quiet"};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> pointers;
     for (std::string& word : words) {
@@ -71,15 +72,19 @@ TEST_F(SegmentCommand, GoesOnWhereItWasStopped) {
   EXPECT_EQ(Run(), 0);
   const std::string made = ReadText(Mask("img1.txt"));
   fs::remove(Mask("img1.txt"));
+  fs::remove(Mask("classes.txt"));  // as if the first call was killed early
   folder_.Write("masks/img0.txt", "0 0.1 0.1 0.2 0.1 0.2 0.2 0.9\n");  // stays
   EXPECT_EQ(Run(), 0);
   EXPECT_EQ(ReadText(Mask("img1.txt")), made);
+  EXPECT_EQ(ReadText(Mask("classes.txt")), "red\nblue\n");
   EXPECT_EQ(ReadText(Mask("img0.txt")), "0 0.1 0.1 0.2 0.1 0.2 0.2 0.9\n");
 }
 
 TEST_F(SegmentCommand, DoesNotMixMasksOfSeveralKinds) {
   EXPECT_EQ(Run(), 0);
   ExpectInputError([&] { Run({"--min-score", "0.5"}); }, {"masks", "0.25", "0.5", "--output"});
+  fs::copy(folder_.path() / "images", folder_.path() / "walk");
+  ExpectInputError([&] { Run({}, "masks", "walk"); }, {"masks", "images", "walk"});
   folder_.Write("other/notes.txt", "mine");
   ExpectInputError([&] { Run({}, "other"); }, {"other", "contains files"});
   EXPECT_EQ(ReadText(folder_.path() / "other" / "notes.txt"), "mine");
@@ -100,6 +105,11 @@ TEST_F(SegmentCommand, SkipsAnImageThatCannotBeReadAndSaysIfNothingIsFound) {
   EXPECT_NE(errors.find("img1.png"), std::string::npos) << errors;
   EXPECT_NE(errors.find("found nothing in 3 images"), std::string::npos) << errors;
   EXPECT_FALSE(fs::exists(Mask("img1.txt")));
+  folder_.Write("sequence/rgb/1.000000.png", "no image");
+  folder_.Write("sequence/rgb/1.100000.png", "no image");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(Run({}, "none", "sequence"), 2);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("none of its images"), std::string::npos);
 }
 
 }  // namespace

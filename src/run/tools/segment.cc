@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "files/atomic_file.h"
+#include "files/canonical_path.h"
 #include "files/json_file.h"
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/segmentation/segmenter.h"
@@ -69,11 +70,13 @@ void AddOptions(CLI::App& app, SegmentArguments& arguments) {
 // What the masks of a folder have in common.
 nlohmann::ordered_json MakeRecord(const SegmentArguments& arguments) {
   std::error_code error;
-  return {{"network", arguments.network.filename().string()},
+  return {{"input", CanonicalName(arguments.input)},
+          {"network", arguments.network.filename().string()},
           {"bytes", fs::file_size(arguments.network, error)},
           {"min_score", arguments.options.min_score},
           {"size", arguments.options.size},
           {"classes", arguments.options.classes},
+          {"names", arguments.options.names.filename().string()},
           {"boxes", arguments.options.use_boxes}};
 }
 
@@ -95,18 +98,18 @@ void PrepareFolder(const SegmentArguments& arguments, const Segmenter& segmenter
           "them",
           arguments.output.string(), former.dump(), record.dump()));
     }
-    return;
-  }
-  if (!fs::is_empty(arguments.output, error)) {
+  } else if (!fs::is_empty(arguments.output, error)) {
     throw InputError(arguments.output.string() +
                      ": contains files, but no masks of this command; choose another --output");
+  } else {
+    WriteFileAtomically(file, record.dump() + '\n');
   }
+  // A former call may have been killed before it came here.
   std::string names;
   for (const std::string& name : segmenter.class_names()) {
     names += name + '\n';
   }
   WriteFileAtomically(arguments.output / "classes.txt", names);
-  WriteFileAtomically(file, record.dump() + '\n');
 }
 
 struct SegmentCounts {
@@ -206,6 +209,10 @@ int RunSegment(int argc, char** argv) {
   if (IsInterrupted()) {
     PrintFailure("interrupted; the same command goes on from here");
     return kFailed;
+  }
+  if (counts.done == 0) {
+    PrintFailure(arguments.input.string() + ": none of its images can be read");
+    return kBadInput;
   }
   return kDone;
 }
