@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
 
@@ -59,11 +60,12 @@ class FitMean {
 
 // The parameters of a camera that the projection depends on.
 struct ImagePlane {
+  PinholeCamera camera;
   Eigen::Matrix3d k;
   Eigen::AlignedBox2d bounds;
 
-  explicit ImagePlane(const PinholeCamera& camera) : k(camera.Matrix()) {
-    const PinholeCamera::Bounds box = camera.UndistortedBounds();
+  explicit ImagePlane(const PinholeCamera& of) : camera(of), k(of.Matrix()) {
+    const PinholeCamera::Bounds box = of.UndistortedBounds();
     bounds.extend(Eigen::Vector2d(box.min_x, box.min_y));
     bounds.extend(Eigen::Vector2d(box.max_x, box.max_y));
   }
@@ -119,7 +121,8 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const R
   if (!ellipse) {
     return fit;
   }
-  const Polygon polygon = ClipToBox(ellipse->Polygon(kEllipseCorners), image.bounds);
+  const Polygon polygon =
+      VisiblePart(ellipse->Polygon(kEllipseCorners), image.camera, image.bounds);
   fit.siou = OverlapWithHull(polygon, view, image.bounds);
   if (has_mask) {
     fit.siou_mask = OverlapWithMask(polygon, view, image.bounds);

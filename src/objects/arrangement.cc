@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "frame/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "objects/object_sighting.h"
 #include "objects/visibility.h"
@@ -39,7 +40,7 @@ void AddPairs(const Frame& frame, const Sensor& sensor, const Rigid3& cam_from_w
       continue;
     }
     if (polygon.empty()) {
-      polygon = ClipToBox(ellipse->Polygon(kVertices), image);
+      polygon = VisiblePart(ellipse->Polygon(kVertices), sensor.camera, image);
     }
     const double overlap = detection.is_box ? IntersectionOverUnion(box, detection.box)
                                             : IntersectionOverUnion(polygon, detection.hull);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "frame/visible_part.h"
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
 #include "objects/carried_hull.h"
@@ -92,7 +93,7 @@ void Predict(const AssociationInput& input, std::span<const ObjectView> views,
   if (predicted.projected) {
     const Eigen::AlignedBox2d image(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
                                     Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y));
-    predicted.ellipse = ClipToBox(predicted.projected->Polygon(32), image);
+    predicted.ellipse = VisiblePart(predicted.projected->Polygon(32), sensor.camera, image);
   }
   predicted.carried = CarryHull(sensor, views, input.cam_from_world);
   for (const ObjectView& view : views) {

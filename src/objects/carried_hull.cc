@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "objects/carried_hull.h"
 
+#include "frame/visible_part.h"
 #include "geometry/convex_hull.h"
 #include "geometry/polygon_overlap.h"
 #include "objects/initialisation.h"
@@ -76,7 +77,7 @@ std::vector<Polygon> CarryHull(const Sensor& sensor, std::span<const ObjectView>
   std::vector<Polygon> carried;
   for (const double inverse_depth : InverseDepths(sensor.camera, views, now_from_then)) {
     const Polygon moved = Move(sensor.camera, last.detection->hull, inverse_depth, now_from_then);
-    carried.push_back(moved.empty() ? moved : ClipToBox(moved, image));
+    carried.push_back(moved.empty() ? moved : VisiblePart(moved, sensor.camera, image));
   }
   return carried;
 }

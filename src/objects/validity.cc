@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
 #include "objects/misfit.h"
@@ -103,7 +104,7 @@ double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
   for (const ObjectView& view : views) {
     const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid);
     if (ellipse) {
-      sum += Overlap(ClipToBox(ellipse->Polygon(), image), *view.detection);
+      sum += Overlap(VisiblePart(ellipse->Polygon(), sensor.camera, image), *view.detection);
     }
   }
   return sum / static_cast<double>(std::max<size_t>(1, views.size()));
