@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "bags/bag.h"
+#include "camera/fit_depth.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/stamp_pairing.h"
 #include "sequences/bag_image.h"
@@ -198,7 +199,9 @@ class BagLoader {
     ImageInput image{frame.timestamp, Read(colour_, colour, Decoding::kGrey, name), cv::Mat()};
     if (!frame.depth.empty()) {
       image.depth = Read(depth_, depth, Decoding::kDepth, frame.depth.string());
-      CheckImageSize(frame.depth.string(), image.depth, camera);
+      if (!HaveSameShape(image.depth.size(), {camera.width, camera.height})) {
+        CheckImageSize(frame.depth.string(), image.depth, camera);
+      }
       if (image.depth.depth() == CV_32F && float_units_ != 1.0) {
         image.depth /= float_units_;
       }
@@ -487,6 +490,7 @@ BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
                        {ShowText(topics[1]->name), of_right}, rate, opened.warnings);
   const auto loader =
       std::make_shared<BagLoader>(std::move(bags), std::move(both[0]), std::move(both[1]), 1.0);
+  pairs.images.unpaired = of_left.size() - paired.size();
   for (const IndexPair& pair : paired) {
     loader->AddPair(path, pair.first, pair.second, pairs.images);
   }
