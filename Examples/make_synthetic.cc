@@ -28,6 +28,8 @@ using hullslam::kFailed;
 using hullslam::synthetic::SequenceOptions;
 using hullslam::synthetic::SuiteOptions;
 
+constexpr double kLargestFisheye = 220.0;  // degrees; wider lenses are hardly made
+
 struct Arguments {
   std::string folder;               // of one sequence
   std::string suite;                // folder of a suite; empty for one sequence
@@ -76,6 +78,13 @@ void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments)
                      "negative if the bottom row is exposed first")
           ->excludes(&suite);
   hullslam::ExpectNumber(*readout_time->capture_default_str(), -0.1, 0.1);
+  auto* const fisheye =
+      app.add_option("--fisheye", arguments.options.fisheye,
+                     "render through a Kannala-Brandt lens with this field of view across the "
+                     "width of the image, degrees; 0: through a pinhole of 62 degrees")
+          ->type_name("DEGREES")
+          ->excludes(&suite);
+  hullslam::ExpectNumber(*fisheye->capture_default_str(), 0.0, kLargestFisheye);
 }
 
 void AddOptions(CLI::App& app, Arguments& arguments) {

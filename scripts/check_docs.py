@@ -18,10 +18,11 @@
 7. The pages in docs/ are at most 25, with at most 35000 words together.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import check_program
 
 MAX_COLUMNS = 140
 MAX_README_LINES = 120
@@ -264,16 +265,5 @@ def check_tree(root):
     return [*faults, *program_faults(documents.values(), root), *size_faults(documents.values())]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top folder of the repository (default: the one of this script)")
-    faults = check_tree(parser.parse_args().root)
-    for line in faults:
-        print(line, file=sys.stderr)
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_program(__doc__, check_tree))

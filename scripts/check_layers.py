@@ -10,10 +10,11 @@
    not need them.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import check_program
 
 LEVELS = {
     "util": 0,
@@ -33,7 +34,7 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16, "view": 16,
-    "exports": 17, "live": 17,
+    "exports": 17, "live": 17, "segmentation": 17,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
     "run": 18,
 }
@@ -93,10 +94,10 @@ def is_private(included, quoted, path, root):
 
 
 def links_of(arguments):
-    """The words after LINKS in the arguments of hullslam_module(), up to PUBLIC or PRIVATE."""
+    """The words after LINKS in the arguments of hullslam_module(), up to the next keyword."""
     links, key = set(), ""
     for word in arguments.split():
-        if word in ("LINKS", "PUBLIC", "PRIVATE"):
+        if word in ("LINKS", "PUBLIC", "PRIVATE") or word.startswith("WITH_"):
             key = word
         elif key == "LINKS":
             links.add(word)
@@ -164,16 +165,5 @@ def check_tree(root):
             for line in check_file(path, module, public, root, links)]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top folder of the repository (default: the one of this script)")
-    faults = check_tree(parser.parse_args().root)
-    for line in faults:
-        print(line, file=sys.stderr)
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_program(__doc__, check_tree))

@@ -15,10 +15,11 @@ The library itself (src), src/run and the other tests are no users, because they
 in src. A header without a user belongs in src/<module>.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import check_program
 
 USERS = ("Examples", "tools", "bench", "python", "tests/consumer")
 SOURCES = {".h", ".cc", ".hpp", ".cpp"}
@@ -67,16 +68,5 @@ def check_tree(root):
             f"src/{pathlib.PurePath(name).parts[1]}" for name in headers if name not in used]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top folder of the repository (default: the one of this script)")
-    faults = check_tree(parser.parse_args().root)
-    for line in faults:
-        print(line, file=sys.stderr)
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_program(__doc__, check_tree))

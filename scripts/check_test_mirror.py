@@ -9,10 +9,11 @@
 The folders integration, support, consumer, fuzz and scripts of tests/ are not checked.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import check_program
 
 FREE = {"integration", "support", "consumer", "fuzz", "scripts"}
 TEST = re.compile(r"^\s*(TYPED_)?TEST(_F|_P)?\s*\(", re.MULTILINE)
@@ -50,16 +51,5 @@ def check_tree(root):
     return [*untested_headers(root), *stray_tests(root)]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top folder of the repository (default: the one of this script)")
-    faults = check_tree(parser.parse_args().root)
-    for line in faults:
-        print(line, file=sys.stderr)
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_program(__doc__, check_tree))

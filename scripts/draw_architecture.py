@@ -54,6 +54,7 @@ CONTENTS = {
     "view": "data of the page",
     "live": "live view in a browser",
     "exports": "files for other programs",
+    "segmentation": "masks by networks",
     "map_files": "maps, vocabularies",
     "run": "what all programs share",
 }

@@ -7,7 +7,8 @@ finds the objects, and SAM (segment anything) refines the mask within each box.
     check_masks SEQUENCE SEQUENCE/masks --output pictures
 
 SEQUENCE is a folder with rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), a folder rgb, or the images
-themselves; or a video. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
+themselves; a sequence of EuRoC or KITTI, or stereo pairs, of which the left images are used; or a
+video. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
 (VIDEO_masks beside a video), and classes.txt with the names of the classes. Images that have a file
 already are left out, so an interrupted call goes on where it stopped. Images that EXIF data turn are
 shown to the networks as a viewer shows them; their masks are those of the stored pixels, which
@@ -27,8 +28,11 @@ import sys
 import time
 
 from support import InputError, exit_code, one_line
+import run_frames
 from run_frames import VideoFrames, colour_images, orientation_of, turn, turn_back
 
+# Where EuRoC, KITTI and folders of stereo pairs have the left images.
+LEFT_FOLDERS = ("mav0/cam0/data", "cam0/data", "image_0", "image_2", "left")
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
 
@@ -43,10 +47,12 @@ def list_images(sequence):
         if path.is_file():
             return [image for line in read_lines(path)
                     for image in [sequence / word_of(path, *line, column)]]
-    images = colour_images(sequence)
+    left = next((sequence / name for name in LEFT_FOLDERS if (sequence / name).is_dir()), None)
+    images = run_frames.list_images(left) if left else colour_images(sequence)
     if not images:
-        raise InputError(f"{sequence}: is no sequence, expected a video, or a folder with rgb.txt, "
-                         "associations.txt, a folder rgb, or PNG or JPEG images")
+        raise InputError(f"{sequence}: is no sequence, expected a video, a sequence of EuRoC or KITTI, "
+                         "stereo pairs, or a folder with rgb.txt, associations.txt, a folder rgb, or "
+                         "PNG or JPEG images")
     return images
 
 
@@ -248,6 +254,9 @@ def show(done, count, begin, at_begin):
 
 def find_frames(sequence):
     """The number of frames, and a function that gives (name, function for the image) of each."""
+    if sequence.suffix in (".bag", ".db3", ".mcap") or (sequence / "metadata.yaml").is_file():
+        raise InputError(f"{sequence}: is a recording of ROS, expected images or a video; "
+                         "`hullslam segment` makes masks of recordings")
     if sequence.is_file():
         return sum(1 for _ in frames_of_video(sequence)), lambda: frames_of_video(sequence)
     images = list_images(sequence)

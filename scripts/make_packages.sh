@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/make_packages.sh [FOLDER]
 #
-# Builds HullSLAM as Debian packages: libhullslam0.1, libhullslam-dev, python3-hullslam and hullslam
-# (the programs).
+# Builds HullSLAM as the Debian packages that packaging/cpack.cmake lists.
 # Installs what the build needs, builds in build/package, and copies the packages to FOLDER
 # (build/packages by default).
 set -euo pipefail

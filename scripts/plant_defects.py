@@ -57,8 +57,9 @@ def read_defects(path, names):
 
 def command_of(entry):
     """The test program and its arguments."""
-    module = pathlib.PurePath(entry["file"]).parent.name
-    return shlex.split(entry.get("test", f"{module}_tests"))
+    folder = pathlib.PurePath(entry["file"]).parent
+    module = folder.parent if folder.name == "comparison" else folder
+    return shlex.split(entry.get("test", f"{module.name}_tests"))
 
 
 def sync(top, copy):

@@ -2,6 +2,7 @@
 """What the scripts share: errors and how they are shown, files, figures of a run, and where the
 programs are."""
 
+import argparse
 import hashlib
 import importlib.util
 import json
@@ -41,6 +42,19 @@ def exit_code(work, arguments, failure=1):
     except (Stopped, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return failure
+
+
+def check_program(doc, check_tree):
+    """The program of a script that checks the repository: prints the faults that check_tree(root) finds,
+    one line each. Returns 1 if there are any."""
+    parser = argparse.ArgumentParser(description=doc,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", default=SCRIPTS.parent,
+                        help="top folder of the repository (default: the one of this script)")
+    faults = check_tree(parser.parse_args().root)
+    for line in faults:
+        print(line, file=sys.stderr)
+    return 1 if faults else 0
 
 
 def require(*packages):

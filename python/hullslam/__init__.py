@@ -10,9 +10,9 @@ seconds.
 """
 
 from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, Masks, MaskFiles,
-                    SeenObject, SequenceFrame, System, TrackResult, Trajectory, TrajectoryErrors,
-                    __version__, default_settings, evaluate_trajectory, open_images, open_masks,
-                    open_tum, preset_names, read_map, read_trajectory)
+                    SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
+                    TrajectoryErrors, __version__, default_settings, evaluate_trajectory,
+                    open_images, open_masks, open_tum, preset_names, read_map, read_trajectory)
 from ._settings import Settings
 
 InputError.__doc__ = """A file, a setting or an argument is wrong.
@@ -21,6 +21,6 @@ The message names the file and line, or the argument and its value, and says wha
 """
 
 __all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles", "Masks",
-           "SeenObject", "SequenceFrame", "Settings", "System", "TrackResult", "Trajectory",
-           "TrajectoryErrors", "__version__", "default_settings", "evaluate_trajectory",
+           "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System", "TrackResult",
+           "Trajectory", "TrajectoryErrors", "__version__", "default_settings", "evaluate_trajectory",
            "open_images", "open_masks", "open_tum", "preset_names", "read_map", "read_trajectory"]

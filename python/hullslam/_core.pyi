@@ -138,6 +138,27 @@ class Masks:
         (points, 2) of raw pixels.
         """
 
+class Segmenter:
+    """A network for instance segmentation (YOLOv8-seg, YOLO11-seg, YOLOv5-seg in ONNX)
+    that makes the masks of images. docs/segmentation.md tells how to get one.
+    """
+    def __init__(self, network: _Path, *, min_score: float = 0.25, classes: Sequence[str] = ...,
+                 names: _Path | None = None, size: int = 0, threads: int = 0,
+                 boxes: bool = False) -> None:
+        """min_score: least score of an instance. classes: only these; empty for all.
+        names: a file with the name of one class per line, or None for those in the file
+        of the network. size: longer side of the image that the network sees, px; 0 for
+        that of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a
+        network that finds no masks. Raises InputError for a file that is no such network.
+        """
+    def segment(self, image: _Image) -> Masks:
+        """The masks of an image, best score first. image: uint8, (height, width) or
+        (height, width, 3 or 4) with blue first.
+        """
+    @property
+    def class_names(self) -> list[str]:
+        """The names of the classes by their numbers."""
+
 class SequenceFrame:
     """One decoded frame of a sequence."""
     @property
@@ -350,6 +371,16 @@ class System:
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
         timestamp: s, larger than that of the frame before.
         Raises InputError for anything else; a refused frame changes nothing.
+        """
+    def await_masks(self, is_on: bool) -> None:
+        """From now on, frames that are tracked without masks await those of add_masks(): a
+        keyframe of such a frame says nothing about objects until then. reset() switches
+        this off.
+        """
+    def add_masks(self, frame: int, masks: Masks) -> bool:
+        """Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at
+        most 2 s of time stamps later. Only keyframes keep them. Returns False for a frame
+        that awaits no masks (any more).
         """
     def finish(self) -> None:
         """Waits until all keyframes are in the map, adjusts the whole map, and computes the

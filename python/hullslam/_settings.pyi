@@ -31,6 +31,12 @@ class _Camera:
     """radial distortion, fourth order (a number of any size; default 0)"""
     k3: float
     """radial distortion, sixth order (a number of any size; default 0)"""
+    k4: float
+    """radial divisor; the fourth of a fisheye (a number of any size; default 0)"""
+    k5: float
+    """radial divisor (a number of any size; default 0)"""
+    k6: float
+    """radial divisor (a number of any size; default 0)"""
     p1: float
     """tangential distortion (a number of any size; default 0)"""
     p2: float
@@ -39,6 +45,8 @@ class _Camera:
     """rolling shutter: an image is exposed row after row or column after column (one of: rows, columns; default rows)"""
     readout_time: float
     """rolling shutter: time from the top row of an image to the bottom row (columns: from left to right), s; negative: the other way round; 0: all at once (a number from -0.1 to 0.1; default 0)"""
+    type: Literal["PinHole", "KannalaBrandt8"]
+    """lens (one of: PinHole, KannalaBrandt8; default PinHole)"""
     width: int
     """width of the images, px (an integer from 16 to 16384; default 640)"""
 
@@ -226,7 +234,7 @@ class _objects_start:
     method: Literal["fitted", "oriented_box", "box_planes", "ray_sphere", "single_view"]
     """how the first quadric of an object is made (docs/objects.md) (one of: fitted, oriented_box, box_planes, ray_sphere, single_view; default fitted)"""
     min_parallax: float
-    """least angle between views that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 3)"""
+    """least angle between views that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 1)"""
     min_parallax_without_depth: float
     """least angle between views that an object without depth needs to be mapped, degrees (a number from 0 to 180; default 15)"""
     min_views: int

@@ -91,6 +91,16 @@ FrameReport Track(LiveSystem& system, const py::object& image, const py::object&
   });
 }
 
+bool AddMasks(LiveSystem& system, int64_t frame, const MaskList& masks) {
+  const PinholeCamera& camera = system.options().camera;
+  if (!masks.size.empty() && masks.size != cv::Size(camera.width, camera.height)) {
+    throw InputError("the masks are " + std::to_string(masks.size.width) + "x" +
+                     std::to_string(masks.size.height) + " px, expected the size of the image, " +
+                     std::to_string(camera.width) + "x" + std::to_string(camera.height) + " px");
+  }
+  return WithoutGil([&] { return system.AddMasks(frame, masks.masks); });
+}
+
 // Signals such as that of Ctrl+C are kept until the call returns, which they make return early.
 void Finish(LiveSystem& system) {
   bool is_interrupted = false;
@@ -216,6 +226,17 @@ void BindSystem(py::module_& module) {
            "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
            "timestamp: s, larger than that of the frame before.\n"
            "Raises InputError for anything else; a refused frame changes nothing.")
+      .def(
+          "await_masks",
+          [](LiveSystem& s, bool is_on) { WithoutGil([&] { s.AwaitMasks(is_on); }); },
+          py::arg("is_on"),
+          "From now on, frames that are tracked without masks await those of add_masks(): a\n"
+          "keyframe of such a frame says nothing about objects until then. reset() switches\n"
+          "this off.")
+      .def("add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
+           "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
+           "most 2 s of time stamps later. Only keyframes keep them. Returns False for a frame\n"
+           "that awaits no masks (any more).")
       .def("finish", &Finish,
            "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
            "poses of all frames again. Ctrl+C ends it early.")

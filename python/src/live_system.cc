@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -165,6 +166,22 @@ void LiveSystem::SetLocalizationOnly(bool is_on) {
     throw InputError("localization needs a map with keyframes, and there is none yet");
   }
   system.SetLocalizationOnly(is_on);
+}
+
+void LiveSystem::AwaitMasks(bool is_on) {
+  const std::lock_guard lock(mutex_);
+  Open().AwaitMasks(is_on);
+}
+
+bool LiveSystem::AddMasks(int64_t frame, std::vector<InstanceMask> masks) {
+  const std::lock_guard lock(mutex_);
+  System& system = Open();
+  if (is_finished_) {
+    throw InputError("add_masks() was called after finish(); reset() begins a new run");
+  }
+  constexpr int64_t kMost = std::numeric_limits<uint32_t>::max();
+  return frame >= 0 && frame < kMost &&
+         system.AddMasks(FrameId(static_cast<uint32_t>(frame)), std::move(masks));
 }
 
 }  // namespace hullslam::python

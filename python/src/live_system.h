@@ -43,6 +43,10 @@ class LiveSystem {
   void Restart(SystemStart start);
   void SetLocalizationOnly(bool is_on);
 
+  void AwaitMasks(bool is_on);
+  // Throws InputError after Finish(), and otherwise as System::AddMasks does.
+  bool AddMasks(int64_t frame, std::vector<InstanceMask> masks);
+
   // Calls `read(const System&)`.
   template <typename Read>
   auto Get(const Read& read) const {

@@ -16,7 +16,7 @@ namespace {
 
 // Messages of the library name the options of the programs. Those of Python name its arguments.
 std::string NameArguments(std::string message) {
-  static constexpr std::array<std::pair<const char*, const char*>, 7> kNames{{
+  static constexpr std::array<std::pair<const char*, const char*>, 11> kNames{{
       {"--settings FILE", "Settings(FILE)"},
       {"--vocabulary FILE|none", "vocabulary=FILE or None"},
       {"--fps N", "fps=N"},
@@ -24,6 +24,10 @@ std::string NameArguments(std::string message) {
       {"--masks-format", "format"},
       {"--associations", "associations"},
       {"--preset", "preset"},
+      {"--names FILE", "names=FILE"},
+      {"--classes", "classes"},
+      {"--min-score", "min_score"},
+      {"--boxes", "boxes=True"},
   }};
   for (const auto& [option, argument] : kNames) {
     for (size_t at = message.find(option); at != std::string::npos; at = message.find(option)) {
@@ -83,6 +87,7 @@ PYBIND11_MODULE(_core, module) {
   BindSettings(module);
   BindTrajectories(module);
   BindMasks(module);
+  BindSegmenter(module);
   BindSequences(module);
   BindMap(module);
   BindSystem(module);

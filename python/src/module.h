@@ -9,6 +9,7 @@ namespace hullslam::python {
 void BindSettings(pybind11::module_& module);
 void BindTrajectories(pybind11::module_& module);
 void BindMasks(pybind11::module_& module);
+void BindSegmenter(pybind11::module_& module);
 void BindSequences(pybind11::module_& module);
 void BindMap(pybind11::module_& module);
 void BindTrackResult(pybind11::module_& module);

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <span>
 
-#include "bags/protobuf_reader.h"
 #include "files/byte_reader.h"
+#include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -26,7 +26,7 @@ struct BagTime {
   double Seconds() const { return static_cast<double>(seconds) + nanoseconds / 1e9; }
 };
 
-// What the messages of a topic are.
+// The kind of the messages of a topic.
 enum class BagContent { kImage, kCompressedImage, kCamera, kOther };
 BagContent ContentOf(const BagTopic& topic);
 

@@ -1,48 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/camera/pinhole.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <optional>
-#include <sstream>
+
+#include "camera/brown.h"
+#include "camera/kannala_brandt.h"
+#include "camera/lens_fault.h"
 
 namespace hullslam {
 namespace {
-
-// The number with up to six digits.
-std::string Print(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-struct Distortion {
-  Eigen::Vector2d point;
-  Eigen::Matrix2d jacobian;
-};
-
-// Brown's model on normalised coordinates, with its derivative.
-Distortion DistortNormalized(const PinholeCamera& camera, const Eigen::Vector2d& p) {
-  const double x = p.x();
-  const double y = p.y();
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
-  const double slope =
-      camera.k1 + r2 * (2.0 * camera.k2 + 3.0 * r2 * camera.k3);  // d radial / d r2
-  const double p1 = camera.p1;
-  const double p2 = camera.p2;
-  Distortion result;
-  result.point = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
-                  y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
-  result.jacobian(0, 0) = radial + 2.0 * x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x;
-  result.jacobian(0, 1) = 2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y;
-  result.jacobian(1, 0) = result.jacobian(0, 1);
-  result.jacobian(1, 1) = radial + 2.0 * y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x;
-  return result;
-}
 
 constexpr double kLeastFocalLength = 10.0;  // px
 constexpr double kMostFocalLength = 1e5;
@@ -52,69 +20,16 @@ constexpr double kMostBaselineTimesFx = 1e6;
 
 std::string Describe(const char* key, double value, const Range& range) {
   return range.Contains(value) ? std::string()
-                               : std::string(key) + " is '" + Print(value) +
+                               : std::string(key) + " is '" + PrintNumber(value) +
                                      "', expected a number " + range.ToString();
 }
 
-// The name of the coefficient that moves a raw pixel most.
-std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
-  const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
-  struct Term {
-    const char* key;
-    double coefficient;
-    double factor;
-  };
-  const std::array<Term, 5> terms = {{{"Camera.k1", camera.k1, std::pow(r, 2)},
-                                      {"Camera.k2", camera.k2, std::pow(r, 4)},
-                                      {"Camera.k3", camera.k3, std::pow(r, 6)},
-                                      {"Camera.p1", camera.p1, r},
-                                      {"Camera.p2", camera.p2, r}}};
-  const auto largest =
-      std::max_element(terms.begin(), terms.end(), [](const auto& a, const auto& b) {
-        return std::abs(a.coefficient) * a.factor < std::abs(b.coefficient) * b.factor;
-      });
-  return std::string(largest->key) + " is '" + Print(largest->coefficient) + "': ";
+LensPoint DistortNormalized(const PinholeCamera& camera, const Eigen::Vector2d& point) {
+  return camera.IsFisheye() ? DistortKannalaBrandt(camera, point) : DistortBrown(camera, point);
 }
 
-// A pixel of the image at which the distortion has no inverse.
-std::optional<Eigen::Vector2d> FindFold(const PinholeCamera& camera) {
-  constexpr int kSteps = 16;
-  constexpr double kMostError = 0.1;  // px
-  constexpr double kSmallestSlope = 1e-3;
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int j = 0; j <= kSteps; ++j) {
-      const Eigen::Vector2d raw(static_cast<double>(camera.width) * j / kSteps,
-                                static_cast<double>(camera.height) * i / kSteps);
-      const Eigen::Vector2d p = camera.Undistort(raw);
-      const Distortion distortion = DistortNormalized(
-          camera, {(p.x() - camera.cx) / camera.fx, (p.y() - camera.cy) / camera.fy});
-      // The comparisons are written so that a NaN is a fold.
-      const bool has_inverse = (camera.Distort(p) - raw).norm() <= kMostError &&
-                               distortion.jacobian.determinant() >= kSmallestSlope;
-      if (!has_inverse) {
-        return raw;
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-std::string FindDistortionFault(const PinholeCamera& camera) {
-  if (const std::optional<Eigen::Vector2d> fold = FindFold(camera)) {
-    return NameCoefficient(camera, *fold) + "the distortion cannot be undone at pixel (" +
-           Print(fold->x()) + ", " + Print(fold->y()) + "), expected the coefficients of a lens";
-  }
-  constexpr double kMostStretch = 4.0;
-  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
-  const double stretch_x = (bounds.max_x - bounds.min_x) / camera.width;
-  const double stretch_y = (bounds.max_y - bounds.min_y) / camera.height;
-  const Range range = Range::Between(1.0 / kMostStretch, kMostStretch);
-  if (!range.Contains(stretch_x) || !range.Contains(stretch_y)) {
-    return NameCoefficient(camera, Eigen::Vector2d::Zero()) + "the undistorted image would have " +
-           Print(stretch_x) + " times the width and " + Print(stretch_y) +
-           " times the height of the image, expected " + range.ToString();
-  }
-  return {};
+Eigen::Vector2d Normalized(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
+  return {(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
 }
 
 }  // namespace
@@ -134,37 +49,50 @@ void PinholeCamera::Bind(OptionTable& options) {
   scope.Add("p1", &p1, Range::Any(), "tangential distortion");
   scope.Add("p2", &p2, Range::Any(), "tangential distortion");
   scope.Add("k3", &k3, Range::Any(), "radial distortion, sixth order");
+  scope.Add("k4", &k4, Range::Any(), "radial divisor; the fourth of a fisheye");
+  scope.Add("k5", &k5, Range::Any(), "radial divisor");
+  scope.Add("k6", &k6, Range::Any(), "radial divisor");
+  scope.AddEnum("type", &lens, {"PinHole", "KannalaBrandt8"}, "lens");
   scope.Add("width", &width, Range::Between(16, 16384), "width of the images, px");
   scope.Add("height", &height, Range::Between(16, 16384), "height of the images, px");
   scope.Add("bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
             "baseline of the virtual stereo camera (m) times fx (px)");
 }
 
+bool PinholeCamera::IsDistorted() const {
+  return IsFisheye() || k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0 ||
+         k4 != 0.0 || k5 != 0.0 || k6 != 0.0;
+}
+
 Eigen::Vector2d PinholeCamera::Distort(const Eigen::Vector2d& undistorted) const {
-  const Eigen::Vector2d normalized((undistorted.x() - cx) / fx, (undistorted.y() - cy) / fy);
-  const Eigen::Vector2d distorted = DistortNormalized(*this, normalized).point;
+  const Eigen::Vector2d distorted = DistortNormalized(*this, Normalized(*this, undistorted)).point;
   return {fx * distorted.x() + cx, fy * distorted.y() + cy};
+}
+
+Eigen::Matrix2d PinholeCamera::DistortionJacobian(const Eigen::Vector2d& undistorted) const {
+  const Eigen::Vector2d focal(fx, fy);
+  return focal.asDiagonal() * DistortNormalized(*this, Normalized(*this, undistorted)).jacobian *
+         focal.cwiseInverse().asDiagonal();
 }
 
 Eigen::Vector2d PinholeCamera::Undistort(const Eigen::Vector2d& raw) const {
   if (!IsDistorted()) {
     return raw;
   }
-  const Eigen::Vector2d target((raw.x() - cx) / fx, (raw.y() - cy) / fy);
-  Eigen::Vector2d estimate = target;
-  constexpr int kMaxIterations = 20;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const Distortion distortion = DistortNormalized(*this, estimate);
-    const Eigen::Vector2d error = distortion.point - target;
-    if (error.squaredNorm() < 1e-20) {
-      break;
-    }
-    if (distortion.jacobian.determinant() <= 1e-6) {
-      break;  // the polynomial folds here and has no inverse beyond
-    }
-    estimate -= distortion.jacobian.inverse() * error;
-  }
-  return {fx * estimate.x() + cx, fy * estimate.y() + cy};
+  const Eigen::Vector2d target = Normalized(*this, raw);
+  const Eigen::Vector2d point =
+      IsFisheye() ? UndistortKannalaBrandt(*this, target) : UndistortBrown(*this, target);
+  return {fx * point.x() + cx, fy * point.y() + cy};
+}
+
+bool PinholeCamera::SeesRaw(const Eigen::Vector2d& raw) const {
+  const bool is_inside = raw.x() >= 0.0 && raw.y() >= 0.0 && raw.x() < width && raw.y() < height;
+  return is_inside &&
+         (!IsFisheye() || Normalized(*this, raw).norm() <= RadiusOfAngle(*this, kMostAngle));
+}
+
+double PinholeCamera::FoldRadius() const {
+  return std::min(fx, fy) * (IsFisheye() ? FoldOfKannalaBrandt(*this) : FoldOfBrown(*this));
 }
 
 PinholeCamera::Bounds PinholeCamera::UndistortedBounds() const {
@@ -201,7 +129,7 @@ std::string PinholeCamera::FindFault() const {
     double value;
     Range range;
   };
-  const std::array<Number, 10> numbers = {
+  const std::array<Number, 13> numbers = {
       {{"Camera.fx", fx, focal_length},
        {"Camera.fy", fy, focal_length},
        {"Camera.cx", cx, principal_point},
@@ -211,14 +139,17 @@ std::string PinholeCamera::FindFault() const {
        {"Camera.k2", k2, Range::Any()},
        {"Camera.k3", k3, Range::Any()},
        {"Camera.p1", p1, Range::Any()},
-       {"Camera.p2", p2, Range::Any()}}};
+       {"Camera.p2", p2, Range::Any()},
+       {"Camera.k4", k4, Range::Any()},
+       {"Camera.k5", k5, Range::Any()},
+       {"Camera.k6", k6, Range::Any()}}};
   for (const Number& number : numbers) {
     std::string fault = Describe(number.key, number.value, number.range);
     if (!fault.empty()) {
       return fault;
     }
   }
-  return IsDistorted() ? FindDistortionFault(*this) : std::string();
+  return IsDistorted() ? FindLensFault(*this) : std::string();
 }
 
 }  // namespace hullslam

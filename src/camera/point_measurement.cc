@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "camera/point_measurement.h"
 
+#include <cmath>
+
 #include "camera/right_column.h"
 
 namespace hullslam {
@@ -17,6 +19,17 @@ PointMeasurement PointMeasurement::Create(const Eigen::Vector2d& pixel, double s
   measurement.inverse_sigma << inverse_sigma, inverse_sigma,
       disparity ? 1.0 / options.disparity_sigma : 0.0;
   return measurement;
+}
+
+// With the errors e of the raw pixel and e = J d, the squared norm of e over sigma is that of U d,
+// U^T U = J^T J. The upper triangular U makes the residual of v depend on dv only.
+void PointMeasurement::TakeLens(const Eigen::Matrix2d& raw_by_undistorted) {
+  const Eigen::Matrix2d square = raw_by_undistorted.transpose() * raw_by_undistorted;
+  const double u = std::sqrt(square(0, 0));
+  const double uv = square(0, 1) / u;
+  shear = -uv / u;
+  inverse_sigma.x() *= u;
+  inverse_sigma.y() *= std::sqrt(square(1, 1) - uv * uv);
 }
 
 }  // namespace hullslam

@@ -48,10 +48,17 @@ struct PointMeasurement {
   // The first residual is that of u - coupling * disparity. 0 unless the errors of u and disparity
   // are correlated (camera/right_column.h).
   double coupling = 0.0;
+  // The first residual is that of u - shear * v. 0 unless the errors of u and v are correlated, as
+  // those of a fisheye lens are after undistortion.
+  double shear = 0.0;
 
   // `scale` is that of the keypoint's pyramid level. No disparity where the depth is unknown.
   static PointMeasurement Create(const Eigen::Vector2d& pixel, double scale,
                                  std::optional<double> disparity, const DepthErrorOptions& options);
+
+  // Converts the errors of u and v, which are given in the image as read, to those of the
+  // undistorted image. `raw_by_undistorted` is PinholeCamera::DistortionJacobian() at the pixel.
+  void TakeLens(const Eigen::Matrix2d& raw_by_undistorted);
 
   bool has_depth() const { return inverse_sigma.z() > 0.0; }
   // Whether all numbers are finite and the pixel has a weight.
@@ -63,14 +70,15 @@ struct PointMeasurement {
   size_t degrees_of_freedom() const { return has_depth() ? 3 : 2; }
 };
 
-// (du - coupling * d disparity, dv, d disparity) in standard deviations, projected minus measured,
-// of a point (m, camera frame) at least kMinDepth in front of the camera. The third is 0 where the
-// depth is unknown.
+// (du - coupling * d disparity - shear * dv, dv, d disparity) in standard deviations, projected
+// minus measured, of a point (m, camera frame) at least kMinDepth in front of the camera. The third
+// is 0 where the depth is unknown.
 inline Eigen::Vector3d PointResidual(const PinholeCamera& camera,
                                      const PointMeasurement& measurement,
                                      const Eigen::Vector3d& point) {
   Eigen::Vector3d error = ProjectRgbd(camera, point) - measurement.measured;
   error.x() -= measurement.coupling * error.z();
+  error.x() -= measurement.shear * error.y();
   return measurement.inverse_sigma.cwiseProduct(error);
 }
 
@@ -80,12 +88,14 @@ inline Eigen::Matrix3d PointResidualJacobian(const PinholeCamera& camera,
                                              const Eigen::Vector3d& point) {
   Eigen::Matrix3d jacobian = ProjectRgbdJacobian(camera, point);
   jacobian(0, 2) -= measurement.coupling * jacobian(2, 2);
+  jacobian.row(0) -= measurement.shear * jacobian.row(1);
   return measurement.inverse_sigma.asDiagonal() * jacobian;
 }
 
-// PointResidual and its derivative without the four zeros of the derivative, for inner loops, in
+// PointResidual and its derivative without the zeros of the derivative, for inner loops, in
 // which multiplying by zeros would take time:
-//   du by (x, y, z) is (u_by_x, 0, u_by_z), dv is (0, v_by_y, v_by_z), d disparity (0, 0, d_by_z).
+//   du by (x, y, z) is (u_by_x, u_by_y, u_by_z), dv is (0, v_by_y, v_by_z), d disparity (0, 0,
+//   d_by_z).
 struct PointLinearization {
   PointLinearization(const PinholeCamera& camera, const PointMeasurement& measurement,
                      const Eigen::Vector3d& point) {
@@ -102,6 +112,12 @@ struct PointLinearization {
                     coupling * (disparity - measurement.measured.z()),
                 v_by_y * point.y() + weight.y() * (camera.cy - measurement.measured.y()),
                 weight.z() * (disparity - measurement.measured.z())};
+    if (measurement.shear != 0.0) {
+      const double shear = measurement.shear * weight.x() / weight.y();
+      u_by_y = -shear * v_by_y;
+      u_by_z -= shear * v_by_z;
+      residual.x() -= shear * residual.y();
+    }
   }
 
   // The derivative of the residual by something that moves the point by `point_by` (3 x N).
@@ -112,12 +128,15 @@ struct PointLinearization {
     product.row(0) = u_by_x * point_by.row(0) + u_by_z * point_by.row(2);
     product.row(1) = v_by_y * point_by.row(1) + v_by_z * point_by.row(2);
     product.row(2) = d_by_z * point_by.row(2);
+    if (u_by_y != 0.0) {
+      product.row(0) += u_by_y * point_by.row(1);
+    }
     return product;
   }
 
   // The transposed derivative times `residual`.
   Eigen::Vector3d Gradient() const {
-    return {u_by_x * residual.x(), v_by_y * residual.y(),
+    return {u_by_x * residual.x(), v_by_y * residual.y() + u_by_y * residual.x(),
             u_by_z * residual.x() + v_by_z * residual.y() + d_by_z * residual.z()};
   }
 
@@ -127,11 +146,18 @@ struct PointLinearization {
     hessian << u_by_x * u_by_x, 0.0, u_by_x * u_by_z,  //
         0.0, v_by_y * v_by_y, v_by_y * v_by_z,         //
         u_by_x * u_by_z, v_by_y * v_by_z, u_by_z * u_by_z + v_by_z * v_by_z + d_by_z * d_by_z;
+    if (u_by_y != 0.0) {
+      hessian(0, 1) = hessian(1, 0) = u_by_x * u_by_y;
+      hessian(1, 1) += u_by_y * u_by_y;
+      hessian(1, 2) += u_by_y * u_by_z;
+      hessian(2, 1) += u_by_y * u_by_z;
+    }
     return hessian;
   }
 
   Eigen::Vector3d residual;
   double u_by_x = 0.0;
+  double u_by_y = 0.0;  // 0 without shear
   double u_by_z = 0.0;
   double v_by_y = 0.0;
   double v_by_z = 0.0;

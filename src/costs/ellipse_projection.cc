@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "costs/ellipse_projection.h"
 
+#include <vector>
+
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
@@ -57,6 +59,34 @@ void EllipseProjection::Linearize() {
     const Eigen::Vector3d axis = quadric_.axes().col(k);
     derivative_.col(6 + k) = Change(2.0 * axis * axis.transpose());
   }
+}
+
+EllipseCost::EllipseCost(size_t residuals, const PinholeCamera& camera, double sigma)
+    : ObjectCost(residuals), camera_(camera), inverse_sigma_(1.0 / sigma) {}
+
+bool EllipseCost::Evaluate(double const* const* parameters, double* residuals,
+                           double** jacobians) const {
+  const QuadricInCamera quadric(parameters);
+  if (!quadric.IsInFront()) {
+    return false;
+  }
+  EllipseProjection ellipse(camera_, quadric);
+  if (!ellipse.HasArea()) {
+    return false;
+  }
+  const auto count = static_cast<size_t>(num_residuals());
+  std::vector<ByEllipse> by_ellipse(jacobians != nullptr ? count : 0, ByEllipse::Zero());
+  Compute(ellipse.numbers(), {residuals, count}, by_ellipse);
+  for (size_t i = 0; i < count; ++i) {
+    residuals[i] *= inverse_sigma_;
+  }
+  if (jacobians != nullptr) {
+    ellipse.Linearize();
+    for (size_t i = 0; i < count; ++i) {
+      ellipse.WriteRow(static_cast<int>(i), inverse_sigma_ * by_ellipse[i], jacobians);
+    }
+  }
+  return true;
 }
 
 }  // namespace hullslam

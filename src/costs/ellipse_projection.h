@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "costs/quadric_in_camera.h"
 #include "hullslam/camera/pinhole.h"
@@ -51,6 +52,24 @@ class EllipseProjection {
   EllipseNumbers numbers_;
   Eigen::Matrix3d conic_;  // B - t t^T, m^2
   Eigen::Matrix<double, 5, 9> derivative_ = Eigen::Matrix<double, 5, 9>::Zero();
+};
+
+// A cost of the projected ellipse. Parameters: those of QuadricInCamera. Not defined unless the
+// quadric is in front of the camera and its projected ellipse has an area.
+class EllipseCost : public ObjectCost {
+ public:
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const final;
+
+ protected:
+  EllipseCost(size_t residuals, const PinholeCamera& camera, double sigma);
+
+ private:
+  // Computes the residuals times sigma, and their derivatives unless `by_ellipse` is empty.
+  virtual void Compute(const EllipseNumbers& ellipse, std::span<double> residuals,
+                       std::span<ByEllipse> by_ellipse) const = 0;
+
+  PinholeCamera camera_;
+  double inverse_sigma_;
 };
 
 }  // namespace hullslam

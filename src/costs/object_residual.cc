@@ -5,14 +5,14 @@
 #include <array>
 #include <cstddef>
 
-#include "costs/quadric_algebraic_plane.h"
-#include "costs/quadric_algebraic_point.h"
-#include "costs/quadric_bhattacharyya.h"
-#include "costs/quadric_box_bounds.h"
-#include "costs/quadric_distribution.h"
-#include "costs/quadric_filtered_point.h"
-#include "costs/quadric_overlap.h"
-#include "costs/quadric_relative_plane.h"
+#include "costs/comparison/quadric_algebraic_plane.h"
+#include "costs/comparison/quadric_algebraic_point.h"
+#include "costs/comparison/quadric_bhattacharyya.h"
+#include "costs/comparison/quadric_box_bounds.h"
+#include "costs/comparison/quadric_distribution.h"
+#include "costs/comparison/quadric_filtered_point.h"
+#include "costs/comparison/quadric_overlap.h"
+#include "costs/comparison/quadric_relative_plane.h"
 #include "costs/quadric_tangent.h"
 #include "costs/residual_kind.h"
 

@@ -49,6 +49,26 @@ struct CvPairs {
   double sigma = 1.0;  // px
 };
 
+// The stretch of the undistorted image of a fisheye lens at a pixel, as a factor on the noise.
+double StretchAt(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
+  return 1.0 / std::sqrt(camera.DistortionJacobian(pixel).determinant());
+}
+
+// OpenCV's estimators have one threshold for all pairs, so they get the pairs of the inner part of
+// a fisheye image, where the stretch is small, if these are enough. All pairs judge the motions.
+std::vector<PixelPair> PairsForSamples(const PinholeCamera& camera,
+                                       std::span<const PixelPair> pairs) {
+  constexpr double kMostStretch = 2.0;
+  std::vector<PixelPair> inner;
+  for (const PixelPair& pair : pairs) {
+    if (camera.IsFisheye() && StretchAt(camera, pair.a) < kMostStretch &&
+        StretchAt(camera, pair.b) < kMostStretch) {
+      inner.push_back(pair);
+    }
+  }
+  return inner.size() < kFewestPairs ? std::vector<PixelPair>(pairs.begin(), pairs.end()) : inner;
+}
+
 CvPairs ToCv(std::span<const PixelPair> pairs) {
   CvPairs points;
   std::vector<double> sigmas;
@@ -121,7 +141,11 @@ struct Hypothesis {
 
 double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,
                     const Eigen::Vector2d& pixel, double sigma) {
-  return (camera.Project(point) - pixel).squaredNorm() / (sigma * sigma);
+  const Eigen::Vector2d error = camera.Project(point) - pixel;
+  const double squared = camera.IsFisheye()
+                             ? (camera.DistortionJacobian(pixel) * error).squaredNorm()
+                             : error.squaredNorm();
+  return squared / (sigma * sigma);
 }
 
 Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs,
@@ -323,7 +347,7 @@ TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair
     result.failure = TwoViewFailure::kTooFewPairs;
     return result;
   }
-  const CvPairs points = ToCv(pairs);
+  const CvPairs points = ToCv(PairsForSamples(camera, pairs));
   cv::Mat k;
   cv::eigen2cv(camera.Matrix(), k);
   std::vector<Rigid3> motions;

@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// One point in two images, as undistorted pixels with the sigma of each.
+// One point in two images, as undistorted pixels with the sigma of each in the image as read.
 struct PixelPair {
   Eigen::Vector2d a;
   Eigen::Vector2d b;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/eval/rpe.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -65,6 +67,28 @@ RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
   report.translation = SummarizeErrors(std::move(translations));
   report.rotation = SummarizeErrors(std::move(rotations));
   return report;
+}
+
+std::string DescribeSwappedRotations(const Trajectory& reference, const Trajectory& estimate,
+                                     const RpeReport& report, const RpeOptions& options) {
+  constexpr double kGood = 1.0;  // degrees
+  constexpr double kClearly = 5.0;
+  if (!report.ok() || report.rotation.median <= kGood) {
+    return "";
+  }
+  Trajectory swapped = reference;
+  for (StampedPose& pose : swapped) {
+    const Eigen::Vector4d read = pose.world_from_cam.rotation.coeffs();  // x y z w
+    pose.world_from_cam.rotation = Eigen::Quaterniond(read[0], read[1], read[2], read[3]);
+  }
+  const double median = EvaluateRpe(swapped, estimate, options).rotation.median;
+  if (kClearly * median > report.rotation.median) {
+    return "";
+  }
+  return fmt::format(
+      "the rotations of the ground truth seem to have qw first: they are off by {:.1f} degrees as "
+      "qx qy qz qw, and by {:.2f} degrees as qw qx qy qz; expected qx qy qz qw",
+      report.rotation.median, median);
 }
 
 }  // namespace hullslam

@@ -14,7 +14,7 @@
 
 namespace hullslam {
 
-// What an export is made from, as the user names it.
+// The input of an export, as the user names it.
 struct ExportSource {
   std::filesystem::path input;     // the output folder of a run, or a file of --save-map
   std::filesystem::path map;       // of the run; empty: the one that its summary.json names

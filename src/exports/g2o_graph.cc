@@ -39,9 +39,13 @@ std::set<Edge> EdgesOf(const Map& map) {
 PointMeasurement MeasurementOf(const Frame& frame, size_t keypoint, const Sensor& sensor) {
   const Keypoint& seen = frame.features.keypoints[keypoint];
   const double depth = frame.features.depth[keypoint];
-  return PointMeasurement::Create(
+  PointMeasurement measurement = PointMeasurement::Create(
       seen.undistorted.cast<double>(), sensor.levels.scale[static_cast<size_t>(seen.level)],
       depth > 0.0 ? std::optional(sensor.camera.bf / depth) : std::nullopt, sensor.depth_error);
+  if (sensor.camera.IsFisheye()) {
+    measurement.TakeLens(sensor.camera.DistortionJacobian(seen.undistorted.cast<double>()));
+  }
+  return measurement;
 }
 
 // The derivative of a point in the second camera by g2o's error of the edge: a translation and the

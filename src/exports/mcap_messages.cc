@@ -116,16 +116,33 @@ std::string JpegMessage(RosTime time, std::string_view jpeg) {
   return message.Message();
 }
 
+namespace {
+
+void PutLens(const PinholeCamera& camera, CdrWriter& message) {
+  std::vector<double> numbers = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  const char* model = "plumb_bob";
+  if (camera.IsFisheye()) {
+    model = "equidistant";
+    numbers = {camera.k1, camera.k2, camera.k3, camera.k4};
+  } else if (camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0) {
+    model = "rational_polynomial";
+    numbers.insert(numbers.end(), {camera.k4, camera.k5, camera.k6});
+  }
+  message.PutText(model);
+  message.PutCount(numbers.size());
+  for (const double number : numbers) {
+    message.Put(number);
+  }
+}
+
+}  // namespace
+
 std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera) {
   CdrWriter message;
   PutHeader(time, kCameraFrame, message);
   message.Put(static_cast<uint32_t>(camera.height));
   message.Put(static_cast<uint32_t>(camera.width));
-  message.PutText("plumb_bob");
-  message.PutCount(5);
-  for (const double number : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) {
-    message.Put(number);
-  }
+  PutLens(camera, message);
   for (const double number :
        {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0,       0.0, 1.0,  // K
         1.0,       0.0, 0.0,       0.0, 1.0,       0.0,       0.0,       0.0, 1.0,  // R

@@ -34,7 +34,7 @@ class RunRecorder {
 
   // Returns the number of images that could not be read.
   size_t Write() {
-    // What holds for the whole run comes first, so that players show it from the beginning.
+    // Messages about the whole run come first, so that players show them from the beginning.
     const RosTime start = ToRosTime(run_.sequence->frames.front().timestamp);
     const std::vector<ReportedObject>& objects = run_.objects->objects;
     WriteOnce("/map/path", "nav_msgs/msg/Path", start, PathMessage(start, *run_.trajectory));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "camera/named_lens.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -48,7 +49,7 @@ PinholeView::PinholeView(const PinholeCamera& camera) : camera_(camera) {
     throw InputError("the camera has too much distortion for an undistorted image");
   }
   offset_ = {seen.x, seen.y};
-  camera_.k1 = camera_.k2 = camera_.p1 = camera_.p2 = camera_.k3 = 0.0;
+  SetNamedLens("pinhole", {}, camera_);
   camera_.cx -= seen.x;
   camera_.cy -= seen.y;
   camera_.width = seen.width;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "hullslam/util/check.h"
 
@@ -34,14 +35,26 @@ int FeatureGrid::Row(float y) const {
 FeatureGrid::FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
                          const Eigen::Vector2f& box_max)
     : min_(box_min) {
-  Check((box_max.array() > box_min.array()).all(), "the box of the image is empty");
+  Sort(keypoints, box_max);
+}
+
+FeatureGrid::FeatureGrid(std::span<const Keypoint> keypoints,
+                         std::vector<Eigen::Vector2f> positions, const Eigen::Vector2f& box_max)
+    : positions_(std::move(positions)) {
+  Check(positions_.size() == keypoints.size(), "there must be one position per keypoint");
+  Sort(keypoints, box_max);
+}
+
+void FeatureGrid::Sort(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_max) {
+  Check((box_max.array() > min_.array()).all(), "the box of the image is empty");
   Check(keypoints.size() <= std::numeric_limits<uint16_t>::max(), "too many keypoints for a grid");
-  cells_per_pixel_ = Eigen::Array2f(kColumns, kRows) / (box_max - box_min).array();
+  cells_per_pixel_ = Eigen::Array2f(kColumns, kRows) / (box_max - min_).array();
   std::vector<uint16_t> cells;
   cells.reserve(keypoints.size());
   cell_start_.assign(kColumns * kRows + 1, 0);
-  for (const Keypoint& keypoint : keypoints) {
-    const int cell = Column(keypoint.undistorted.x()) * kRows + Row(keypoint.undistorted.y());
+  for (uint32_t i = 0; i < keypoints.size(); ++i) {
+    const Eigen::Vector2f position = PositionOf(keypoints, i);
+    const int cell = Column(position.x()) * kRows + Row(position.y());
     cells.push_back(static_cast<uint16_t>(cell));
     ++cell_start_[static_cast<size_t>(cell) + 1];
   }
@@ -65,6 +78,9 @@ FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
   FeatureGrid selected;
   selected.min_ = min_;
   selected.cells_per_pixel_ = cells_per_pixel_;
+  for (size_t i = 0; i < kept.size() && !positions_.empty(); ++i) {
+    selected.positions_.push_back(positions_.at(kept[i]));
+  }
   selected.order_.reserve(kept.size());
   selected.cell_start_.reserve(cell_start_.size());
   size_t position = 0;
@@ -93,9 +109,11 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
     for (size_t position = cell[first_row]; position < cell[last_row + 1]; ++position) {
       const uint16_t index = order_[position];
       const Keypoint& keypoint = keypoints[index];
-      if (keypoint.level >= min_level && keypoint.level <= max_level &&
-          std::abs(keypoint.undistorted.x() - center.x()) < radius &&
-          std::abs(keypoint.undistorted.y() - center.y()) < radius) {
+      if (keypoint.level < min_level || keypoint.level > max_level) {
+        continue;
+      }
+      const Eigen::Vector2f at = PositionOf(keypoints, index);
+      if (std::abs(at.x() - center.x()) < radius && std::abs(at.y() - center.y()) < radius) {
         found.push_back(index);
       }
     }

@@ -18,23 +18,10 @@ namespace fs = std::filesystem;
 
 const fs::path kShare = fs::path("share") / "hullslam";
 
-// The file that contains this code: a program, a shared library or a module of Python; empty if the
-// system cannot tell.
-fs::path ThisFile() {
-  Dl_info info{};
-  std::error_code error;
-  if (dladdr(reinterpret_cast<const void*>(&FindData), &info) == 0 || info.dli_fname == nullptr) {
-    return {};
-  }
-  const fs::path file = fs::canonical(info.dli_fname, error);
-  // For a program, the name is how it was called, which need not be a path.
-  return error ? fs::read_symlink("/proc/self/exe", error) : file;
-}
-
 // The folder share/hullslam of the installation that this code is in; empty if it is not installed.
 fs::path OwnShare() {
   std::error_code error;
-  for (fs::path folder = ThisFile().parent_path(); folder.has_relative_path();
+  for (fs::path folder = FileOfThisCode().parent_path(); folder.has_relative_path();
        folder = folder.parent_path()) {
     if (fs::is_directory(folder / kShare, error)) {
       return folder / kShare;
@@ -44,6 +31,17 @@ fs::path OwnShare() {
 }
 
 }  // namespace
+
+fs::path FileOfThisCode() {
+  Dl_info info{};
+  std::error_code error;
+  if (dladdr(reinterpret_cast<const void*>(&FindData), &info) == 0 || info.dli_fname == nullptr) {
+    return {};
+  }
+  const fs::path file = fs::canonical(info.dli_fname, error);
+  // For a program, the name is how it was called, which need not be a path.
+  return error ? fs::read_symlink("/proc/self/exe", error) : file;
+}
 
 fs::path FindData(const fs::path& name, std::string_view hint) {
   std::vector<std::string> paths;

@@ -106,20 +106,27 @@ std::string ReadText(const fs::path& path, size_t most_bytes) {
   return text;
 }
 
+std::vector<std::string_view> LinesOf(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
 void CheckUtf8(const fs::path& path, std::string_view text) {
-  int line = 0;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view row = text.substr(begin, end - begin);
-    ++line;
-    if (!IsUtf8(row)) {
+  int number = 0;
+  for (const std::string_view line : LinesOf(text)) {
+    ++number;
+    if (!IsUtf8(line)) {
       throw InputError(
           fmt::format("{}:{}: '{}' is not UTF-8 (perhaps an 8-bit encoding of Windows), expected a "
                       "file that is "
                       "saved as UTF-8",
-                      path.string(), line, ShowText(row)));
+                      path.string(), number, ShowText(line)));
     }
-    begin = end + 1;
   }
 }
 

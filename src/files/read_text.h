@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/read_file.h"
 
@@ -16,6 +17,9 @@ namespace hullslam {
 // a mark that are not UTF-16 stay as they are, because names of files may be in any encoding.
 // Throws InputError for a file that ReadFile() refuses, for UTF-32, and for UTF-16 that breaks off.
 std::string ReadText(const std::filesystem::path& path, size_t most_bytes = kMostTextFileBytes);
+
+// The lines of a text without their "\n". There is none behind the last "\n".
+std::vector<std::string_view> LinesOf(std::string_view text);
 
 // Throws InputError "FILE:LINE: ..." for the first bytes of `text` that are not UTF-8. For texts
 // with names that people read. In the file, `text` begins at line 1.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <system_error>
 
 #include "files/plausible.h"
@@ -128,15 +127,11 @@ double TextRow::Stamp(size_t column, std::string_view name) const {
 
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit, size_t most_bytes) {
-  const std::string bytes = ReadText(path, most_bytes);
-  const std::string_view text = bytes;
+  const std::string text = ReadText(path, most_bytes);
   TextRow row{.path = path, .line = 0, .columns = {}};
-  bool is_first = true;      // no line with data or with names has come yet
-  std::optional<int> names;  // the line with the names, until data follow
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
+  bool is_first = true;  // no line with data or with names has come yet
+  int names = 0;         // the line with the names, until data follow; then 0
+  for (const std::string_view line : LinesOf(text)) {
     ++row.line;
     CheckLine(row, line);
     SplitColumns(line, row.columns);
@@ -146,15 +141,16 @@ void ForEachRow(const std::filesystem::path& path,
     }
     if (is_first && (is_comment || NamesColumns(row.columns))) {
       row.header = line;
-      names = is_comment ? std::nullopt : std::optional(row.line);
+      names = is_comment ? 0 : row.line;
     } else if (!row.columns.empty() && !is_comment) {
-      names.reset();
+      names = 0;
       visit(row);
     }
     is_first = is_first && (row.columns.empty() || is_comment);
   }
-  if (names) {  // no data follow, so the line is not what it seems, and the visitor can say why
-    row.line = *names;
+  // If no data follow, the line is not what it seems, and the visitor can say why.
+  if (names != 0) {
+    row.line = names;
     SplitColumns(row.header, row.columns);
     visit(row);
   }

@@ -28,6 +28,7 @@ struct Candidate {
   Outline outline;
   MaskRegion region;
   Detection detection;
+  MaskView view;
   double depth = 0.0;  // m, median of its points; 0 if unknown
 };
 
@@ -35,13 +36,15 @@ struct FrameView {
   const DetectionOptions& options;
   DepthView depth;
   std::span<const RawKeypoint> keypoints;
-};
 
-bool IsAtBorder(const Eigen::Vector2d& undistorted, const PinholeCamera& camera, double border) {
-  const Eigen::Vector2d raw = camera.Distort(undistorted);
-  return raw.x() <= border || raw.y() <= border || raw.x() >= camera.width - 1 - border ||
-         raw.y() >= camera.height - 1 - border;
-}
+  // The same frame in the view of a mask.
+  FrameView From(const MaskView& view) const {
+    return {
+        .options = options,
+        .depth = {.camera = view, .image = depth.image, .units_per_metre = depth.units_per_metre},
+        .keypoints = keypoints};
+  }
+};
 
 // The ellipse that touches the four sides of the box in their middle.
 Ellipse EllipseInBox(const Eigen::AlignedBox2d& box) {
@@ -59,7 +62,8 @@ std::optional<DetectionRejection> CheckOutline(const Outline& outline, const Fra
   if (SignedArea(outline.hull) < frame.options.min_area_px2) {
     return DetectionRejection::kTooSmall;
   }
-  const double image = static_cast<double>(frame.depth.camera.width) * frame.depth.camera.height;
+  const double image =
+      static_cast<double>(frame.depth.camera.camera().width) * frame.depth.camera.camera().height;
   if (SignedArea(outline.hull) > frame.options.max_area_share * image) {
     return DetectionRejection::kTooLarge;
   }
@@ -104,7 +108,7 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   detection.primitive = frame.options.primitive;
   detection.is_box = mask.shape == MaskShape::kBox;
   detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(), [&](const auto& corner) {
-    return IsAtBorder(corner, frame.depth.camera, frame.options.border_px);
+    return frame.depth.camera.IsAtBorder(corner, frame.options.border_px);
   });
   if (mask.shape == MaskShape::kEllipse || frame.options.primitive == ObjectPrimitive::kConic) {
     detection.ellipse = FitEllipse(outline.contour);
@@ -116,17 +120,19 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
 
 // Makes the candidate, unless the mask alone is a reason to reject it.
 std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index,
-                                          const FrameView& frame,
+                                          const FrameView& whole,
                                           std::optional<Candidate>& candidate) {
-  if (mask.score < frame.options.min_score) {
+  if (mask.score < whole.options.min_score) {
     return DetectionRejection::kLowScore;
   }
-  std::vector<Polygon2> parts = LargeParts(mask.outlines, frame.options.min_part_share);
+  std::vector<Polygon2> parts = LargeParts(mask.outlines, whole.options.min_part_share);
+  const PinholeCamera& camera = whole.depth.camera.camera();
+  const FrameView frame = whole.From(MaskView(camera, parts));
   Outline outline = UndistortOutline(parts, frame.depth.camera);
   if (const auto rejection = CheckOutline(outline, frame)) {
     return rejection;
   }
-  MaskRegion region(parts, frame.depth.camera);
+  MaskRegion region(parts, camera);
   Detection detection = DetectionOf(mask, outline, frame);
   detection.keypoints = KeypointsIn(region, frame.keypoints);
   if (detection.keypoints.size() < static_cast<size_t>(frame.options.min_keypoints)) {
@@ -147,6 +153,7 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
                         .outline = std::move(outline),
                         .region = std::move(region),
                         .detection = std::move(detection),
+                        .view = frame.depth.camera,
                         .depth = depth};
   return std::nullopt;
 }
@@ -229,14 +236,15 @@ bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
                 std::span<const MaskRegion* const> others) {
   const bool is_cut =
       std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& point) {
-        return IsAtBorder(point, frame.depth.camera, frame.options.border_px);
+        return frame.depth.camera.IsAtBorder(point, frame.options.border_px);
       });
   return is_cut ||
          (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others, frame.options));
 }
 
-void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
+void AddLines(const std::vector<Candidate>& candidates, const FrameView& whole,
               Candidate& candidate) {
+  const FrameView frame = whole.From(candidate.view);
   std::vector<const MaskRegion*> others;
   for (const Candidate& other : candidates) {
     if (other.index != candidate.index) {
@@ -286,6 +294,7 @@ DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, con
     const bool is_held = std::any_of(lines.begin(), lines.end(),
                                      [](const SilhouetteLine& line) { return !line.is_one_sided; });
     if (is_held) {
+      candidate.view.ToUndistorted(candidate.detection);
       result.detections.push_back(std::move(candidate.detection));
     } else {
       result.rejections[candidate.index] = DetectionRejection::kNoSilhouette;

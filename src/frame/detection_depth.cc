@@ -107,8 +107,9 @@ std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion
         continue;
       }
       const double depth = view.AtRaw(raw);
-      if (depth > 0.0) {
-        points.push_back(view.camera.Unproject(view.camera.Undistort(raw), depth));
+      const PinholeCamera& camera = view.camera.camera();
+      if (depth > 0.0 && (!camera.IsFisheye() || camera.SeesRaw(raw))) {
+        points.push_back(camera.Unproject(camera.Undistort(raw), depth));
       }
     }
   }
@@ -127,11 +128,19 @@ double MedianDepth(std::span<const Eigen::Vector3d> points) {
   return Median(std::move(depths));
 }
 
-void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_offset,
+void RemoveFarFromMedian(const MaskView& camera, double side, double max_offset,
                          std::vector<Eigen::Vector3d>& points) {
-  const double median = MedianDepth(points);
-  const double limit = max_offset * side / camera.fx * median;
-  std::erase_if(points, [&](const auto& point) { return std::abs(point.z() - median) > limit; });
+  if (points.empty()) {
+    return;
+  }
+  std::vector<double> depths;
+  for (const Eigen::Vector3d& point : points) {
+    depths.push_back(camera.DepthOf(point));
+  }
+  const double median = Median(std::move(depths));
+  const double limit = max_offset * side / camera.focal() * median;
+  std::erase_if(
+      points, [&](const auto& point) { return std::abs(camera.DepthOf(point) - median) > limit; });
 }
 
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,

@@ -8,13 +8,13 @@
 
 #include "frame/detection_lines.h"
 #include "frame/detection_region.h"
-#include "hullslam/camera/pinhole.h"
+#include "frame/mask_view.h"
 
 namespace hullslam {
 
-// A depth image with the camera that took it.
+// A depth image with the view in which a mask is described.
 struct DepthView {
-  const PinholeCamera& camera;
+  MaskView camera;
   const cv::Mat& image;  // as in ImageInput, or empty
   double units_per_metre;
 
@@ -31,9 +31,9 @@ std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion
 // Median of z; 0 if there are no points.
 double MedianDepth(std::span<const Eigen::Vector3d> points);
 
-// Removes the points whose z differs from the median by more than `max_offset` times the size that
-// `side` (px) has at the median depth.
-void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_offset,
+// Removes the points whose depth in the view differs from the median by more than `max_offset`
+// times the size that `side` (px) has at the median depth.
+void RemoveFarFromMedian(const MaskView& camera, double side, double max_offset,
                          std::vector<Eigen::Vector3d>& points);
 
 // Whether something nearer than the object begins just beyond the line. This is tested at several

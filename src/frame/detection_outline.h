@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/camera/pinhole.h"
+#include "frame/mask_view.h"
 
 namespace hullslam {
 
@@ -22,6 +22,6 @@ struct Outline {
 // pixels. Parts without area are left out.
 std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share);
 
-Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& camera);
+Outline UndistortOutline(std::span<const Polygon2> parts, const MaskView& camera);
 
 }  // namespace hullslam

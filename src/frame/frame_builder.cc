@@ -13,6 +13,7 @@
 #include "camera/fit_depth.h"
 #include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
+#include "frame/keypoint_grid.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -111,7 +112,8 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
           camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
       features.keypoints[i] = {
           .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
-      features.right_u[i] = VirtualRight(undistorted.x(), features.depth[i], camera.bf);
+      features.right_u[i] = VirtualRight(static_cast<float>(camera.FarRight(undistorted.x())),
+                                         features.depth[i], camera.bf);
     }
   });
 }
@@ -129,9 +131,22 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
   return words;
 }
 
+// The pixels beyond the largest angle of a fisheye lens.
+cv::Mat UnusedPixels(const PinholeCamera& camera) {
+  cv::Mat unused(camera.height, camera.width, CV_8UC1);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      unused.at<unsigned char>(y, x) = camera.SeesRaw({x, y}) ? 0 : 255;
+    }
+  }
+  return unused;
+}
+
+// A pixel of a fisheye image is a large angle, so rounding to whole pixels would cost precision.
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
   features.keep_edges = features.keep_edges || !sensor.IsMonocular();
-  features.subpixel = features.subpixel || sensor.kind == SensorKind::kStereo;
+  features.subpixel =
+      features.subpixel || sensor.kind == SensorKind::kStereo || sensor.camera.IsFisheye();
   return features;
 }
 
@@ -160,6 +175,9 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
       remove_dynamic_(remove_dynamic) {
+  if (sensor.camera.IsFisheye()) {
+    unused_ = UnusedPixels(sensor.camera);
+  }
   if (sensor.kind == SensorKind::kStereo) {
     stereo_.emplace(features, sensor.camera);
   }
@@ -168,30 +186,38 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
   }
 }
 
-BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
+BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
   CheckImages(image, sensor_);
   if (image.depth.empty() || image.depth.size() == image.grey.size()) {
-    return BuildFitted(image, runner);
+    return BuildFitted(image, runner, awaits_masks);
   }
   ImageInput fitted = image;
   fitted.depth = FitDepth(image.depth, image.grey.size());
-  return BuildFitted(fitted, runner);
+  return BuildFitted(fitted, runner, awaits_masks);
 }
 
-BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner) {
+BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner,
+                                     bool awaits_masks) {
   using Clock = std::chrono::steady_clock;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
-  const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
+  DetectionInput input;
+  input.keypoints = AddFeatures(image, runner, built.frame->features);
   if (vocabulary_ != nullptr) {
     built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
   }
   built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
-  built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
+  const bool is_awaiting = awaits_masks && detector_ && image.masks.empty();
   if (detector_) {
-    const cv::Mat depth =
-        stereo_ ? DepthOfMasks(image, built.frame->features, runner) : image.depth;
-    detector_->AddDetections(image.masks, depth, keypoints, runner, built);
+    const cv::Rect all(0, 0, image.grey.cols, image.grey.rows);
+    const cv::Rect region = is_awaiting ? all : RegionOf(image.masks, image.grey.size());
+    input.depth = stereo_ ? DepthIn(region, image, built.frame->features, runner) : image.depth;
+  }
+  if (is_awaiting) {
+    input.depth = input.depth.clone();  // the caller may write the next image there
+    built.awaiting = std::make_shared<const DetectionInput>(std::move(input));
+  } else {
+    AddDetections(image.masks, input, runner, built);
   }
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
@@ -199,9 +225,8 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
 }
 
 // The keypoints on an object are too few to show its surface.
-cv::Mat FrameBuilder::DepthOfMasks(const ImageInput& image, const FrameFeatures& features,
-                                   TaskRunner& runner) const {
-  const cv::Rect region = RegionOf(image.masks, image.grey.size());
+cv::Mat FrameBuilder::DepthIn(const cv::Rect& region, const ImageInput& image,
+                              const FrameFeatures& features, TaskRunner& runner) const {
   if (region.empty()) {
     return {};
   }
@@ -213,11 +238,22 @@ cv::Mat FrameBuilder::DepthOfMasks(const ImageInput& image, const FrameFeatures&
   return CoarseDepth(image.grey, image.right, sensor_.camera, {region, disparities}, runner);
 }
 
+void FrameBuilder::AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
+                                 TaskRunner& runner, BuiltFrame& built) {
+  built.masks.frames_with_masks = masks.empty() ? 0 : 1;
+  if (detector_) {
+    detector_->AddDetections(masks, input.depth, input.keypoints, runner, built);
+  }
+}
+
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
   ExtractedFeatures extracted = stereo_
                                     ? stereo_->Extract(extractor_, image.grey, image.right, runner)
                                     : extractor_.Extract(image.grey, runner);
+  if (!unused_.empty()) {
+    RemoveMasked(unused_, extracted.keypoints, extracted.descriptors);
+  }
   if (remove_dynamic_) {
     const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
     if (!mask.empty()) {
@@ -230,10 +266,7 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
                        : SampleDepths(extracted.keypoints, image.depth, depth_.units_per_metre);
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
-  const PinholeCamera::Bounds& bounds = sensor_.bounds;
-  features.grid =
-      FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-                  Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera, sensor_.bounds);
   return std::move(extracted.keypoints);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -40,17 +41,23 @@ class FrameBuilder {
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
   // allows, or if the sensor has another image than a depth or a right image. The masks must pass
   // ValidateMasks().
-  BuiltFrame Build(const ImageInput& image, TaskRunner& runner);
+  // If a frame without masks `awaits_masks`, it keeps what AddDetections() needs.
+  BuiltFrame Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks = false);
+
+  // Adds the detections of masks that come after the frame was built, and counts the masks.
+  // `input` is BuiltFrame::awaiting. May be called while another thread calls Build.
+  void AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
+                     TaskRunner& runner, BuiltFrame& built);
 
  private:
   // `image` has depth of its own size.
-  BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner);
+  BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks);
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);
-  // A depth image of a stereo camera, only where the masks are.
-  cv::Mat DepthOfMasks(const ImageInput& image, const FrameFeatures& features,
-                       TaskRunner& runner) const;
+  // A depth image of a stereo camera, only in a region of the image.
+  cv::Mat DepthIn(const cv::Rect& region, const ImageInput& image, const FrameFeatures& features,
+                  TaskRunner& runner) const;
 
   const Sensor& sensor_;
   DepthOptions depth_;
@@ -60,6 +67,7 @@ class FrameBuilder {
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
   bool remove_dynamic_;
+  cv::Mat unused_;  // the pixels that are not used; empty if all are
 };
 
 }  // namespace hullslam

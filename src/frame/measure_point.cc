@@ -12,10 +12,14 @@ PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& feature
   const double right_u = static_cast<double>(features.right_u[keypoint]);
   std::optional<double> disparity;
   if (right_u >= 0.0) {
-    disparity = pixel.x() - right_u;
+    disparity = sensor.camera.FarRight(pixel.x()) - right_u;
   }
   const double scale = static_cast<double>(sensor.levels.scale[static_cast<size_t>(seen.level)]);
-  return PointMeasurement::Create(pixel, scale, disparity, error);
+  PointMeasurement measurement = PointMeasurement::Create(pixel, scale, disparity, error);
+  if (sensor.camera.IsFisheye()) {
+    measurement.TakeLens(sensor.camera.DistortionJacobian(pixel));
+  }
+  return measurement;
 }
 
 }  // namespace hullslam

@@ -17,7 +17,7 @@ class PairCheck {
   void Add(const cv::Mat& left, const cv::Mat& right);
 
   size_t matches() const { return rows_.size(); }
-  // What is wrong with the pairs, for a message that begins with their name; nothing if they are as
+  // The fault of the pairs, for a message that begins with their name; nothing if they are as
   // they should be, or if there are too few matches to say so.
   std::optional<std::string> FindFault() const;
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <vector>
 
+#include "frame/keypoint_grid.h"
 #include "hullslam/util/check.h"
 #include "util/median.h"
 
@@ -114,13 +115,11 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
     const Eigen::Vector2f moved =
         (time * ImageVelocity(camera, velocity, pixel, inverse_depths[i])).cast<float>();
     features.keypoints[i].undistorted -= moved;
-    if (features.depth[i] > 0.0F) {
+    if (features.depth[i] > 0.0F && !camera.IsFisheye()) {
       features.right_u[i] -= moved.x();
     }
   }
-  features.grid = FeatureGrid(
-      features.keypoints, Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y).cast<float>(),
-      Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y).cast<float>());
+  features.grid = MakeKeypointGrid(features.keypoints, camera, sensor.bounds);
   const double of_image = MedianOfKnown({inverse_depths.begin(), inverse_depths.end()});
   for (Detection& detection : corrected->detections) {
     const double inverse_depth = InverseDepthOf(detection, inverse_depths, of_image);

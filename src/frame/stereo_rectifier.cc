@@ -17,8 +17,13 @@ cv::Matx33d IntrinsicsOf(const PinholeCamera& camera) {
   return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
 }
 
-cv::Vec<double, 5> DistortionOf(const PinholeCamera& camera) {
-  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+// For the size of the rectified image. That of a fisheye lens keeps the focal length: all of its
+// field of view would not fit.
+cv::Vec<double, 8> DistortionOf(const PinholeCamera& camera) {
+  if (camera.IsFisheye()) {
+    return {};
+  }
+  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6};
 }
 
 bool HaveSameIntrinsics(const PinholeCamera& a, const PinholeCamera& b) {

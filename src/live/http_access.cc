@@ -6,20 +6,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <random>
+
+#include "util/lower_case.h"
 
 namespace hullslam {
 namespace {
 
 constexpr std::string_view kScheme = "http://";
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 // The name or address in a Host header, without the port and without the brackets of IPv6. Empty if
 // anything else than a port follows it.

@@ -34,7 +34,7 @@ using Error = boost::system::error_code;
 
 class Connection;
 
-// What the connections of a server share. Only the thread of the server uses it.
+// The data that the connections of a server share. Only the thread of the server uses it.
 struct Shared {
   asio::io_context& context;
   const HttpLimits limits;

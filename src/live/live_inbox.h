@@ -15,7 +15,7 @@
 
 namespace hullslam {
 
-// What the run hands over after each frame. All large parts are shared, so this takes microseconds.
+// The data of one frame. Large parts are shared, so handing it over takes microseconds.
 struct LiveFrame {
   FrameReport report;
   std::shared_ptr<const Map> map;  // null before the first keyframe
@@ -33,7 +33,7 @@ struct LiveLoss {
   std::string reason;  // that of its first frame
 };
 
-// What the viewer knows about the run at one moment.
+// The knowledge of the viewer about the run at one moment.
 struct LiveState {
   std::shared_ptr<const Map> map;  // that of the last frame; null before the first keyframe
   std::vector<TrackedFrame> path;  // evenly chosen; their keyframes are in the map

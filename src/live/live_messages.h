@@ -17,7 +17,7 @@
 
 namespace hullslam {
 
-// What stays the same during a run.
+// The facts that stay the same during a run.
 struct LiveRun {
   std::string title;
   std::string program;
@@ -30,10 +30,10 @@ struct LiveRun {
   bool can_localise = true;  // whether the run may be switched to localisation only
 };
 
-// What the run does now.
+// The present activity of the run.
 enum class LivePhase { kRunning, kPaused, kFinishing, kEnded };
 
-// What the page shows of the controls.
+// The state of the controls on the page.
 struct LiveControls {
   LivePhase phase = LivePhase::kRunning;
   bool is_localising = false;  // the map is fixed

@@ -22,7 +22,7 @@ struct ViewAddress {
   int port = kDefaultViewPort;        // 0: any free one
 };
 
-// What the view needs of the program. The functions are called in threads of the view.
+// Functions of the program that the view calls, in threads of the view.
 struct LiveCommands {
   // Saves the map. Returns a sentence that says where it is, or why it could not be saved.
   std::function<std::string(const Map& map)> save_map;

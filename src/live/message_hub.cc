@@ -35,12 +35,6 @@ bool MessageHub::NeedsWhole() const {
                      [](const auto& entry) { return entry.second.NeedsWhole(); });
 }
 
-bool MessageHub::HasReadersBehind() const {
-  const std::lock_guard lock(mutex_);
-  return std::any_of(readers_.begin(), readers_.end(),
-                     [](const auto& entry) { return entry.second.is_behind; });
-}
-
 void MessageHub::GiveFrame(const SharedMessage& message) {
   {
     const std::lock_guard lock(mutex_);

@@ -35,9 +35,8 @@ class MessageHub {
   ReaderId AddReader();
   void RemoveReader(ReaderId reader);
   size_t reader_count() const;
-  // Whether a reader is behind and waits, and whether one is behind at all.
+  // Whether a reader is behind and waits.
   bool NeedsWhole() const;
-  bool HasReadersBehind() const;
 
   void GiveFrame(const SharedMessage& message);
   void GiveMapChange(const SharedMessage& message);

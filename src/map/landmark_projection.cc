@@ -17,7 +17,7 @@ std::optional<LandmarkView> ViewLandmark(const Sensor& sensor, const Rigid3& cam
     return std::nullopt;
   }
   view.pixel = sensor.camera.Project(view.point_in_cam);
-  if (!sensor.bounds.Contains(view.pixel)) {
+  if (!sensor.Sees(view.pixel)) {
     return std::nullopt;
   }
   const double distance = view.point_in_cam.norm();
@@ -30,7 +30,8 @@ std::optional<LandmarkView> ViewLandmark(const Sensor& sensor, const Rigid3& cam
   if (view.cos_view < kMinCosView) {
     return std::nullopt;
   }
-  view.right_u = view.pixel.x() - sensor.camera.bf / view.point_in_cam.z();
+  view.grid_pixel = sensor.ToGrid(view.pixel);
+  view.right_u = sensor.camera.FarRight(view.pixel.x()) - sensor.camera.bf / view.point_in_cam.z();
   view.level = sensor.levels.PredictLevel(distance, landmark.max_distance);
   return view;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "files/plausible.h"
+#include "frame/keypoint_grid.h"
 #include "map_files/map_records.h"
 
 namespace hullslam {
@@ -24,12 +25,6 @@ void WriteFeatures(const FrameFeatures& features, ByteWriter& out) {
       out.Put(word);
     }
   }
-}
-
-FeatureGrid MakeGrid(const std::vector<Keypoint>& keypoints, const PinholeCamera& camera) {
-  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
-  return {keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-          Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>()};
 }
 
 FrameFeatures ReadFeatures(const MapSettings& settings, ByteReader& in) {
@@ -57,7 +52,8 @@ FrameFeatures ReadFeatures(const MapSettings& settings, ByteReader& in) {
     }
     features.descriptors.push_back(descriptor);
   }
-  features.grid = MakeGrid(features.keypoints, settings.camera);
+  features.grid =
+      MakeKeypointGrid(features.keypoints, settings.camera, settings.camera.UndistortedBounds());
   return features;
 }
 

@@ -10,6 +10,9 @@ namespace {
 constexpr uint8_t kRgbd = 1;
 constexpr uint8_t kMonocular = 2;
 constexpr uint8_t kStereo = 3;
+// Added to the number of the sensor if the camera has more than Brown's five coefficients. Then
+// these follow the camera.
+constexpr uint8_t kMoreOfLens = 16;
 
 uint8_t NumberOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? kMonocular
@@ -29,7 +32,18 @@ void WriteCamera(const PinholeCamera& camera, ByteWriter& out) {
   out.Put(static_cast<int32_t>(camera.height));
 }
 
-PinholeCamera ReadCamera(ByteReader& in) {
+bool HasMoreOfLens(const PinholeCamera& camera) {
+  return camera.IsFisheye() || camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0;
+}
+
+void WriteMoreOfLens(const PinholeCamera& camera, ByteWriter& out) {
+  out.PutFlag(camera.IsFisheye());
+  for (const double number : {camera.k4, camera.k5, camera.k6}) {
+    out.Put(number);
+  }
+}
+
+PinholeCamera ReadCamera(bool has_more_of_lens, ByteReader& in) {
   PinholeCamera camera;
   for (double* number : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.k1, &camera.k2,
                          &camera.p1, &camera.p2, &camera.k3, &camera.bf}) {
@@ -38,6 +52,12 @@ PinholeCamera ReadCamera(ByteReader& in) {
   constexpr int kMostSide = 65'536;  // px; the options of the camera have a smaller bound
   camera.width = in.Get<int32_t>();
   camera.height = in.Get<int32_t>();
+  if (has_more_of_lens) {
+    camera.lens = in.GetFlag() ? LensModel::kKannalaBrandt : LensModel::kBrown;
+    for (double* number : {&camera.k4, &camera.k5, &camera.k6}) {
+      *number = in.GetFinite(kMostMapNumber);
+    }
+  }
   in.Require(camera.width > 0 && camera.width <= kMostSide && camera.height > 0 &&
                  camera.height <= kMostSide && camera.FindFault().empty(),
              "has a camera that cannot be");
@@ -47,8 +67,14 @@ PinholeCamera ReadCamera(ByteReader& in) {
 }  // namespace
 
 void WriteHeader(const MapHeader& header, ByteWriter& out) {
-  out.Put(NumberOf(header.settings.sensor));
-  WriteCamera(header.settings.camera, out);
+  const PinholeCamera& camera = header.settings.camera;
+  const bool has_more_of_lens = HasMoreOfLens(camera);
+  out.Put(static_cast<uint8_t>(NumberOf(header.settings.sensor) +
+                               (has_more_of_lens ? kMoreOfLens : 0)));
+  WriteCamera(camera, out);
+  if (has_more_of_lens) {
+    WriteMoreOfLens(camera, out);
+  }
   out.Put(static_cast<int32_t>(header.settings.level_count));
   out.Put(header.settings.scale_factor);
   out.Put(header.settings.vocabulary);
@@ -66,13 +92,15 @@ void WriteHeader(const MapHeader& header, ByteWriter& out) {
 
 MapHeader ReadHeader(ByteReader& in) {
   MapHeader header;
-  const auto sensor = in.Get<uint8_t>();
+  const auto number = in.Get<uint8_t>();
+  const bool has_more_of_lens = number > kMoreOfLens;
+  const auto sensor = static_cast<uint8_t>(number - (has_more_of_lens ? kMoreOfLens : 0));
   in.Require(sensor >= kRgbd && sensor <= kStereo,
              "is of a sensor that this version does not know");
   header.settings.sensor = sensor == kRgbd        ? SensorKind::kRgbd
                            : sensor == kMonocular ? SensorKind::kMonocular
                                                   : SensorKind::kStereo;
-  header.settings.camera = ReadCamera(in);
+  header.settings.camera = ReadCamera(has_more_of_lens, in);
   header.settings.level_count = in.Get<int32_t>();
   header.settings.scale_factor = in.GetFinite(kMostScaleFactor);
   in.Require(header.settings.level_count > 0 && header.settings.level_count <= kMostLevels &&

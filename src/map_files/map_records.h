@@ -22,7 +22,7 @@ constexpr double kMostMapNumber = 1e15;
 
 constexpr uint32_t kMapVersion = 3;
 
-// What comes first: the settings, the sessions and how many entities follow.
+// The first part: the settings, the sessions and how many entities follow.
 struct MapHeader {
   MapSettings settings;
   std::vector<Session> sessions;

@@ -143,10 +143,10 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
     return {};
   }
   const Eigen::Matrix3d calibration = sensor.camera.Matrix();
-  return MatchForTriangulation(a.frame->features, FreeKeypoints(a), b.frame->features,
-                               FreeKeypoints(b),
-                               FundamentalFromPose(b_from_a, calibration, calibration),
-                               EpipoleOf(b_from_a, sensor.camera), sensor.levels, {});
+  return MatchForTriangulation(
+      a.frame->features, FreeKeypoints(a), b.frame->features, FreeKeypoints(b),
+      FundamentalFromPose(b_from_a, calibration, calibration), EpipoleOf(b_from_a, sensor.camera),
+      sensor.levels, {.lens = sensor.camera.IsFisheye() ? &sensor.camera : nullptr});
 }
 
 bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
@@ -155,15 +155,16 @@ bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
          HasConsistentScale(a, b, point, sensor);
 }
 
-// The pixels and depths of the landmarks of a keyframe.
+// The pixels (Sensor::ToGrid) and depths of the landmarks of a keyframe.
 class NearbyDepth {
  public:
-  NearbyDepth(const Map& map, const Keyframe& keyframe) {
+  NearbyDepth(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
     for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
       if (keyframe.landmarks[i].IsValid()) {
         const Eigen::Vector3d& position = map.landmarks().At(keyframe.landmarks[i]).position;
-        samples_.push_back({keyframe.frame->features.keypoints[i].undistorted.cast<double>(),
-                            (keyframe.cam_from_world * position).z()});
+        const Eigen::Vector2d pixel =
+            keyframe.frame->features.keypoints[i].undistorted.cast<double>();
+        samples_.push_back({sensor.ToGrid(pixel), (keyframe.cam_from_world * position).z()});
       }
     }
   }
@@ -193,16 +194,21 @@ class NearbyDepth {
   std::vector<Sample> samples_;
 };
 
-// The distance between the images in b, on the normalised plane, of a point of view a at this depth
-// and of a point that is infinitely far away.
-double ParallaxAt(double depth, const View& a, const View& b) {
+// The distance in image b, px, between a point of view a at this depth and a point that is
+// infinitely far away.
+double ParallaxAt(double depth, const View& a, const View& b, const Sensor& sensor) {
   const Rigid3 b_from_a = b.keyframe->cam_from_world * Inverse(a.keyframe->cam_from_world);
   const Eigen::Vector3d infinite = b_from_a.rotation * a.normalized.homogeneous();
   const Eigen::Vector3d point = infinite + b_from_a.translation / depth;
   if (point.z() <= 0.0 || infinite.z() <= 0.0) {
     return 0.0;
   }
-  return (point.hnormalized() - infinite.hnormalized()).norm();
+  if (sensor.camera.IsFisheye()) {
+    return (sensor.camera.Distort(sensor.camera.Project(point)) -
+            sensor.camera.Distort(sensor.camera.Project(infinite)))
+        .norm();
+  }
+  return sensor.camera.fx * (point.hnormalized() - infinite.hnormalized()).norm();
 }
 
 // Triangulates a pair of a monocular camera if the parallax expected for its depth is large enough.
@@ -211,9 +217,9 @@ double ParallaxAt(double depth, const View& a, const View& b) {
 // computed from the depth of the landmarks that are nearest in the image.
 std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
                                                const NearbyDepth& nearby, const Sensor& sensor) {
-  const std::optional<double> depth = nearby.At(a.pixel);
-  const double noise = std::hypot(a.scale, b.scale) / sensor.camera.fx;
-  if (!depth || ParallaxAt(*depth, a, b) < kMinParallaxSigmas * noise) {
+  const std::optional<double> depth = nearby.At(sensor.ToGrid(a.pixel));
+  const double noise = std::hypot(a.scale, b.scale);
+  if (!depth || ParallaxAt(*depth, a, b, sensor) < kMinParallaxSigmas * noise) {
     return std::nullopt;
   }
   return Triangulate(a, b);
@@ -228,7 +234,7 @@ std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& s
       BestCovisible(map.keyframes().At(id), rules.neighbours);
   std::optional<NearbyDepth> nearby;
   if (rules.nearby_landmarks_decide) {
-    nearby.emplace(map, map.keyframes().At(id));
+    nearby.emplace(map, map.keyframes().At(id), sensor);
   }
   std::vector<LandmarkId> created;
   for (const KeyframeId neighbour : neighbours) {

@@ -64,7 +64,7 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
       continue;
     }
     Projection& projection = projections.emplace_back();
-    projection.pixel = view->pixel.cast<float>();
+    projection.pixel = view->grid_pixel.cast<float>();
     projection.right_u = static_cast<float>(view->right_u);
     projection.radius = kRadius * sensor.levels.scale[static_cast<size_t>(view->level)];
     projection.min_level = view->level - 1;

@@ -117,6 +117,28 @@ bool Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   return outcome.is_applied;
 }
 
+bool Mapper::Apply(const LateDetections& late, const Cancellation*) {
+  const std::optional<KeyframeId> keyframe = map_.KeyframeOfFrame(late.frame);
+  if (!keyframe || !map_.keyframes().Contains(*keyframe)) {
+    return false;
+  }
+  Keyframe& observer = map_.MutableKeyframe(*keyframe);
+  // An old keyframe keeps only some of its keypoints (CompactKeyframe).
+  if (!observer.frame->detections.empty() || observer.frame->features.size() != late.keypoints) {
+    return false;
+  }
+  auto frame = std::make_shared<Frame>(*observer.frame);
+  frame->detections = late.detections;
+  observer.objects.assign(frame->detections.size(), ObjectId());
+  observer.frame = std::move(frame);
+  if (object_options_.enabled) {
+    const ScopedTimer timer(times_, "map_objects");
+    object_mapper_.Process(map_, *keyframe);
+  }
+  PublishSnapshot();
+  return true;
+}
+
 // Creates the landmarks and objects that follow from a new keyframe.
 void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
   newest_keyframe_ = keyframe;
@@ -152,8 +174,8 @@ std::optional<KeyframeId> Mapper::NewestKeyframe() const {
 }
 
 void Mapper::MapObjects(KeyframeId keyframe) {
-  const bool has_objects =
-      !map_.objects().empty() || !map_.keyframes().At(keyframe).frame->detections.empty();
+  const bool has_detections = !map_.keyframes().At(keyframe).frame->detections.empty();
+  const bool has_objects = has_detections || (!awaits_masks_ && !map_.objects().empty());
   if (object_options_.enabled && has_objects) {
     const ScopedTimer timer(times_, "map_objects");
     object_mapper_.Process(map_, keyframe);

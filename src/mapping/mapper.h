@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,6 +43,10 @@ class Mapper {
   // corrected since the snapshot.
   bool Process(const MapMessage& message, const Cancellation* hurry);
 
+  // From now on, a keyframe without detections awaits them in a LateDetections, and says nothing
+  // about objects until then; or no longer. May be called by any thread.
+  void AwaitMasks(bool is_on) { awaits_masks_ = is_on; }
+
   // The next five functions are for the end of a run (system/finish_run.h).
   // False for a map of earlier sessions to which no keyframe was added.
   bool HasChangedMap() const { return !session_; }
@@ -82,6 +87,7 @@ class Mapper {
   bool Apply(const InitialMap& initial, const Cancellation* hurry);
   bool Apply(const KeyframeRequest& request, const Cancellation* hurry);
   bool Apply(const MapCorrection& correction, const Cancellation* hurry);
+  bool Apply(const LateDetections& late, const Cancellation* hurry);
   void BeginSession();
   std::vector<ChangedObject> FindChanges() const;
   ObjectId FindLeft(const ChangedObject& changed) const;
@@ -110,6 +116,7 @@ class Mapper {
   Contradictions<LandmarkId> contradictions_;
   size_t contradicted_landmarks_ = 0;
   size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
+  std::atomic<bool> awaits_masks_ = false;
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
   std::vector<std::shared_ptr<const Map>> left_islands_;

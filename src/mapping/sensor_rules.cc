@@ -23,7 +23,7 @@ CullingRules CullingRules::ForSensor(SensorKind kind, MappingRule rule) {
   // Depth gives every keyframe the scale. One observation with depth and one without are too few.
   // With three other observers, too few keyframes remain where the camera passes a plain wall:
   // those that are left share so few landmarks that the map bends there (docs/results.md, icl3).
-  // What others see one by one may still be needed to join two sides. Mur-Artal and Tardos 2015
+  // A keyframe whose landmarks others see may still join two sides. Mur-Artal and Tardos 2015
   // (section III.D) call two keyframes strongly connected from 100 shared landmarks on.
   return {.max_weak_weight = 3,
           .other_observers = 4,

@@ -17,16 +17,6 @@ namespace {
 // The identifiers between 1 and 90 that the annotations of COCO never use.
 constexpr std::array<int64_t, 10> kGaps = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
-std::vector<std::string> SplitLines(std::string_view text) {
-  std::vector<std::string> lines;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    lines.emplace_back(Trim(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return lines;
-}
-
 }  // namespace
 
 const std::vector<std::string>& CocoClasses() {
@@ -77,7 +67,10 @@ std::vector<std::string> ReadClasses(const std::filesystem::path& folder) {
   }
   const std::string text = ReadText(path, kMostBytes);
   CheckUtf8(path, text);
-  std::vector<std::string> names = SplitLines(text);
+  std::vector<std::string> names;
+  for (const std::string_view line : LinesOf(text)) {
+    names.emplace_back(Trim(line));
+  }
   while (!names.empty() && names.back().empty()) {
     names.pop_back();
   }

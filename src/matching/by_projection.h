@@ -14,7 +14,7 @@ namespace hullslam {
 
 // The expected view of a point in an image, and the search window around it.
 struct Projection {
-  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, undistorted
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, as in the grid (Sensor::ToGrid)
   float right_u = -1.0f;  // px in the virtual right image; below 0: not compared
   float radius = 0.0f;    // px; half side of the search window and bound on the error of right_u
   int min_level = 0;

@@ -2,6 +2,7 @@
 #include "matching/for_triangulation.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -28,8 +29,25 @@ struct Block {
   std::array<uint32_t, kSize> keypoints = {};
 };
 
+// How a fisheye lens stretches the undistorted image at each keypoint of `indices`, by keypoint:
+// the undistorted offset of a raw offset. Empty without such a lens.
+std::vector<Eigen::Matrix2d> StretchesOf(const FrameFeatures& features,
+                                         std::span<const uint32_t> indices,
+                                         const PinholeCamera* lens) {
+  std::vector<Eigen::Matrix2d> stretches;
+  if (lens != nullptr) {
+    stretches.resize(features.size());
+    for (const uint32_t i : indices) {
+      stretches[i] =
+          lens->DistortionJacobian(features.keypoints[i].undistorted.cast<double>()).inverse();
+    }
+  }
+  return stretches;
+}
+
 std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uint32_t> indices,
-                              const ScaleLevels& levels, double max_epipolar_chi2) {
+                              std::span<const Eigen::Matrix2d> stretches, const ScaleLevels& levels,
+                              double max_epipolar_chi2) {
   // Room for the rounding of the distance, which is a sum of three numbers of the size of
   // coordinates.
   constexpr float kLeastRoom = 0.01f;  // px
@@ -42,8 +60,9 @@ std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uin
     const auto lane = static_cast<Eigen::Index>(i % Block::kSize);
     block.x[lane] = keypoint.undistorted.x();
     block.y[lane] = keypoint.undistorted.y();
-    block.reach[lane] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
-                        kRelativeRoom * keypoint.undistorted.lpNorm<1>();
+    const double stretch = stretches.empty() ? 1.0 : stretches[indices[i]].norm();
+    block.reach[lane] = static_cast<float>(stretch * std::sqrt(max_epipolar_chi2 * sigma2)) +
+                        kLeastRoom + kRelativeRoom * keypoint.undistorted.lpNorm<1>();
     block.keypoints[i % Block::kSize] = indices[i];
   }
   return blocks;
@@ -82,11 +101,21 @@ void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descrip
   }
 }
 
-// Squared distance from a pixel to the line a x + b y + c = 0, px^2. It is NaN if a and b are zero,
-// which happens without a baseline.
-double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& pixel) {
+// Squared distance from a pixel to the line a x + b y + c = 0, px^2; with a fisheye lens in the raw
+// image. It is NaN if a and b are zero, which happens without a baseline.
+double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& pixel,
+                           const Eigen::Matrix2d* stretch) {
   const double value = line.head<2>().dot(pixel) + line.z();
-  return value * value / line.head<2>().squaredNorm();
+  const double slope = stretch == nullptr ? line.head<2>().squaredNorm()
+                                          : (stretch->transpose() * line.head<2>()).squaredNorm();
+  return value * value / slope;
+}
+
+// Squared distance of two pixels, px^2; with a fisheye lens in the raw image, to first order.
+double SquaredDistance(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                       const Eigen::Matrix2d* stretch) {
+  const Eigen::Vector2d offset = a - b;
+  return stretch == nullptr ? offset.squaredNorm() : (stretch->inverse() * offset).squaredNorm();
 }
 
 }  // namespace
@@ -96,7 +125,9 @@ std::vector<Match> MatchForTriangulation(
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,
     const Eigen::Vector2d& epipole, const ScaleLevels& levels, const TriangulationSearch& search) {
   std::vector<Match> matches;
-  const std::vector<Block> blocks = MakeBlocks(b, b_indices, levels, search.max_epipolar_chi2);
+  const std::vector<Eigen::Matrix2d> stretches = StretchesOf(b, b_indices, search.lens);
+  const std::vector<Block> blocks =
+      MakeBlocks(b, b_indices, stretches, levels, search.max_epipolar_chi2);
   std::vector<uint32_t> near;
   std::vector<Candidate> similar;
   for (const uint32_t query : a_indices) {
@@ -109,11 +140,13 @@ std::vector<Match> MatchForTriangulation(
       const Eigen::Vector2d pixel_b = b.keypoints[keypoint].undistorted.cast<double>();
       const auto level = static_cast<size_t>(b.keypoints[keypoint].level);
       const bool has_depth = a.right_u[query] >= 0.0f || b.right_u[keypoint] >= 0.0f;
+      const Eigen::Matrix2d* const stretch = stretches.empty() ? nullptr : &stretches[keypoint];
       const double epipole_bound =
           search.min_epipole_distance * static_cast<double>(levels.scale[level]);
       if (distance >= best.distance ||
-          (!has_depth && (pixel_b - epipole).squaredNorm() < epipole_bound * epipole_bound) ||
-          !(SquaredLineDistance(line, pixel_b) <=
+          (!has_depth &&
+           SquaredDistance(pixel_b, epipole, stretch) < epipole_bound * epipole_bound) ||
+          !(SquaredLineDistance(line, pixel_b, stretch) <=
             search.max_epipolar_chi2 * static_cast<double>(levels.sigma2[level]))) {
         continue;
       }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/features/frame_features.h"
 #include "matching/match.h"
 
@@ -16,6 +17,8 @@ struct TriangulationSearch {
   // px^2 over sigma^2; 95 % of a chi-square distribution with one degree of freedom
   double max_epipolar_chi2 = 3.84;
   double min_epipole_distance = 10.0;  // px at level 0; the parallax is too small below this
+  // The fisheye lens of image b, in whose raw image the distances are measured; null without.
+  const PinholeCamera* lens = nullptr;
 };
 
 // Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that have

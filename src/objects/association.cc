@@ -6,9 +6,9 @@
 
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
-#include "objects/association_measure.h"
 #include "objects/carried_hull.h"
 #include "objects/combined_similarity.h"
+#include "objects/comparison/association_measure.h"
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"

@@ -89,7 +89,7 @@ bool ShouldBeSeenWith(const Map& map, const Sensor& sensor, const ObjectLandmark
   for (const ObjectObservation& observation : seen.observations) {
     const Eigen::Vector3d center = map.keyframes().At(observation.keyframe).cam_from_world *
                                    other.ellipsoid.world_from_object.translation;
-    inside += center.z() > 0.0 && sensor.bounds.Contains(sensor.camera.Project(center)) ? 1 : 0;
+    inside += center.z() > 0.0 && sensor.Sees(sensor.camera.Project(center)) ? 1 : 0;
   }
   return 2 * inside > seen.observations.size();
 }

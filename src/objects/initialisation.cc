@@ -5,8 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "geometry/oriented_box.h"
+#include "geometry/polyline.h"
 #include "objects/point_statistics.h"
 #include "util/median.h"
 
@@ -68,6 +71,15 @@ std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points
   return inner;
 }
 
+// The radius, in radians, of a circle with the solid angle of the hull: in the undistorted image of
+// a fisheye lens, a box is much larger at the rim. An area of the plane z = 1 is the solid angle
+// over the cube of the cosine of the angle from the axis.
+double AngularRadius(const PinholeCamera& camera, const Detection& detection) {
+  const Eigen::Vector3d ray = camera.Unproject(detection.box.center(), 1.0).normalized();
+  const double area = SignedArea(detection.hull) / (camera.fx * camera.fy);
+  return std::sqrt(std::max(0.0, area) * std::pow(ray.z(), 3) / std::numbers::pi);
+}
+
 // A sphere with this centre and the mean size of the boxes. Null if the centre is not in front of
 // all cameras.
 std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCamera& camera,
@@ -77,6 +89,10 @@ std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCa
     const double depth = (view.cam_from_world * center).z();
     if (depth <= 0.0) {
       return std::nullopt;
+    }
+    if (camera.IsFisheye()) {
+      radius += AngularRadius(camera, *view.detection) * (view.cam_from_world * center).norm();
+      continue;
     }
     const Eigen::Vector2d sides = view.detection->box.sizes();
     radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "geometry/polyline.h"
+#include "objects/raw_lines.h"
 
 namespace hullslam {
 namespace {
@@ -33,11 +34,16 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
   const double support = stretched.norm();
   plane.excess = -normal_in_cam.dot(cam_from_object.translation) - support;
   const Eigen::Vector3d contact = ellipsoid.half_axes.cwiseProduct(stretched) / support;
-  const double depth = (cam_from_object * contact).z();
+  const Eigen::Vector3d contact_in_cam = cam_from_object * contact;
+  const double depth = contact_in_cam.z();
   if (depth < kMinContactDepth) {
     return std::nullopt;
   }
   plane.pixels_per_metre = scale / depth;
+  plane.raw_per_metre =
+      camera.IsFisheye()
+          ? plane.pixels_per_metre * RawShare(camera, camera.Project(contact_in_cam), line.normal)
+          : plane.pixels_per_metre;
   return plane;
 }
 
@@ -125,11 +131,11 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
       if (!plane) {
         continue;
       }
-      const double excess = plane->excess * plane->pixels_per_metre;
+      const double excess = plane->excess * plane->raw_per_metre;
       const double predicted =
           PredictExcess(object.misfit_samples, plane->normal, view.keyframe, options)
               .value_or(0.0) *
-          plane->pixels_per_metre;
+          plane->raw_per_metre;
       plain += excess * excess;
       compensated += (excess - predicted) * (excess - predicted);
       ++count;

@@ -14,6 +14,7 @@
 #include "costs/pixel_error.h"
 #include "costs/quadric_prior.h"
 #include "objects/point_statistics.h"
+#include "objects/raw_lines.h"
 #include "util/thin.h"
 
 namespace hullslam {
@@ -57,6 +58,11 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, cons
   std::optional<Ellipse> projected;
   if (NeedsProjection(options.residual)) {
     projected = ProjectEllipsoid(camera.Matrix(), view.cam_from_world, ellipsoid);
+  }
+  std::vector<SilhouetteLine> scaled;
+  if (camera.IsFisheye() && options.residual == ObjectResidual::kTangent) {
+    scaled = ScaleToRaw(camera, *view.detection, lines);
+    lines = scaled;
   }
   auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma, projected);
   if (cost == nullptr) {

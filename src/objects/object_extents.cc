@@ -68,14 +68,17 @@ struct TouchingPlane {
 };
 
 // Whether the hull's corner that the line touches is near the border of the image.
-bool IsNearBorder(const Detection& detection, const Line2& line,
-                  const PinholeCamera::Bounds& bounds) {
+bool IsNearBorder(const Detection& detection, const Line2& line, const Sensor& sensor) {
   const auto corner = std::max_element(
       detection.hull.begin(), detection.hull.end(),
       [&](const auto& a, const auto& b) { return line.normal.dot(a) < line.normal.dot(b); });
-  return corner == detection.hull.end() ||
-         std::min({corner->x() - bounds.min_x, bounds.max_x - corner->x(),
-                   corner->y() - bounds.min_y, bounds.max_y - corner->y()}) < kBorderPx;
+  if (corner == detection.hull.end()) {
+    return true;
+  }
+  const PinholeCamera::Bounds bounds = sensor.GridBounds();
+  const Eigen::Vector2d pixel = sensor.ToGrid(*corner);
+  return std::min({pixel.x() - bounds.min_x, bounds.max_x - pixel.x(), pixel.y() - bounds.min_y,
+                   bounds.max_y - pixel.y()}) < kBorderPx;
 }
 
 std::vector<TouchingPlane> FindPlanes(const Sensor& sensor, const Ellipsoid& ellipsoid,
@@ -83,7 +86,7 @@ std::vector<TouchingPlane> FindPlanes(const Sensor& sensor, const Ellipsoid& ell
   std::vector<TouchingPlane> planes;
   for (const ObjectView& view : views) {
     for (const SilhouetteLine& line : view.detection->lines) {
-      if (line.is_one_sided || IsNearBorder(*view.detection, line.line, sensor.bounds)) {
+      if (line.is_one_sided || IsNearBorder(*view.detection, line.line, sensor)) {
         continue;
       }
       if (const auto plane =

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hullslam/util/error.h"
-#include "objects/association_measure.h"
+#include "objects/comparison/association_measure.h"
 #include "objects/start_method.h"
 
 namespace hullslam {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string_view>
 
+#include "objects/comparison/start_box_planes.h"
+#include "objects/comparison/start_oriented_box.h"
+#include "objects/comparison/start_single_view.h"
 #include "objects/initialisation.h"
-#include "objects/start_box_planes.h"
-#include "objects/start_oriented_box.h"
-#include "objects/start_single_view.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// What the start of an object is made from. The references must outlive this struct.
+// The input of a start method. The references must outlive this struct.
 struct StartInput {
   const PinholeCamera& camera;
   std::span<const ObjectView> views;  // with their surface landmarks (AddSurfaceLandmarks)

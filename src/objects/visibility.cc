@@ -2,6 +2,7 @@
 #include "objects/visibility.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "geometry/polyline.h"
 #include "objects/object_view.h"
@@ -39,6 +40,20 @@ class HiddenCounter {
   int nearer_ = 0;
 };
 
+// The box of raw pixels of a box of undistorted ones. With a fisheye lens the sides bulge out.
+Eigen::AlignedBox2d RawBoxOf(const PinholeCamera& camera, const Eigen::AlignedBox2d& bounds) {
+  Eigen::AlignedBox2d raw(camera.Distort(bounds.min()), camera.Distort(bounds.max()));
+  constexpr int kSteps = 8;
+  for (int i = 0; i <= kSteps && camera.IsFisheye(); ++i) {
+    const Eigen::Vector2d at = bounds.min() + i / static_cast<double>(kSteps) * bounds.sizes();
+    raw.extend(camera.Distort({at.x(), bounds.min().y()}));
+    raw.extend(camera.Distort({at.x(), bounds.max().y()}));
+    raw.extend(camera.Distort({bounds.min().x(), at.y()}));
+    raw.extend(camera.Distort({bounds.max().x(), at.y()}));
+  }
+  return raw;
+}
+
 // Calls `use` with the undistorted pixel and the depth (z, m) of each known sample in a box of
 // undistorted pixels.
 template <typename Use>
@@ -46,8 +61,9 @@ void ForEachSample(const DepthGrid& grid, const PinholeCamera& camera,
                    const Eigen::AlignedBox2d& bounds, const Use& use) {
   // Distortion moves the corners of the box, so a sample at its rim may be missed; that does no
   // harm.
-  const Eigen::Vector2d first = camera.Distort(bounds.min()) / DepthGrid::kStep;
-  const Eigen::Vector2d last = camera.Distort(bounds.max()) / DepthGrid::kStep;
+  const Eigen::AlignedBox2d raw = RawBoxOf(camera, bounds);
+  const Eigen::Vector2d first = raw.min() / DepthGrid::kStep;
+  const Eigen::Vector2d last = raw.max() / DepthGrid::kStep;
   const int last_column = std::min(grid.columns() - 1, static_cast<int>(last.x()));
   const int last_row = std::min(grid.rows() - 1, static_cast<int>(last.y()));
   for (int row = std::max(0, static_cast<int>(first.y())); row <= last_row; ++row) {
@@ -69,8 +85,17 @@ void AddLandmarks(const Map& map, const ImageKnowledge& image, HiddenCounter& co
   }
 }
 
-// The share of the area of a box that is in the image; exactly 1 if it is there as a whole.
-double ShareInside(const Eigen::AlignedBox2d& box, const PinholeCamera::Bounds& bounds) {
+// The share of the area of an ellipse's box that is in the image; exactly 1 if it is there as a
+// whole. With a fisheye lens, whose undistorted image is no box, the share of the outline.
+double ShareInside(const Ellipse& ellipse, const Sensor& sensor) {
+  if (sensor.camera.IsFisheye()) {
+    const std::vector<Eigen::Vector2d> outline = ellipse.Polygon();
+    const auto inside = std::count_if(outline.begin(), outline.end(),
+                                      [&](const auto& pixel) { return sensor.Sees(pixel); });
+    return static_cast<double>(inside) / static_cast<double>(outline.size());
+  }
+  const Eigen::AlignedBox2d box = ellipse.Bounds();
+  const PinholeCamera::Bounds& bounds = sensor.bounds;
   const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
                                   Eigen::Vector2d(bounds.max_x, bounds.max_y));
   const Eigen::AlignedBox2d inside = box.intersection(image);
@@ -114,7 +139,7 @@ LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowl
                           double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
-  if (!ellipse || !(ShareInside(ellipse->Bounds(), sensor.bounds) >= min_inside)) {
+  if (!ellipse || !(ShareInside(*ellipse, sensor) >= min_inside)) {
     return LocationView::kOutside;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;

@@ -21,8 +21,10 @@ std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels&
       continue;
     }
     near.clear();
-    features.grid.FindNear(features.keypoints, features.keypoints[keypoint].undistorted, kRadius, 0,
-                           std::numeric_limits<int>::max(), near);
+    features.grid.FindNear(
+        features.keypoints,
+        features.grid.PositionOf(features.keypoints, static_cast<uint32_t>(keypoint)), kRadius, 0,
+        std::numeric_limits<int>::max(), near);
     double most = 0.0;
     double sum = 0.0;
     for (const uint32_t i : near) {

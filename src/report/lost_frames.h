@@ -23,10 +23,10 @@ enum class LossReason {
 
 // For messages and files: "too few features" and so on.
 std::string_view ToString(LossReason reason);
-// What the user can try, in one sentence without a full stop.
+// Advice for the user, in one sentence without a full stop.
 std::string_view AdviceFor(LossReason reason);
 
-// What tracking has told about a frame during the run.
+// The result of tracking for a frame, as it was during the run.
 struct FrameNote {
   size_t number = 0;  // of the frame in its sequence, counted from 0
   TrackingState state = TrackingState::kNotInitialized;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "results/json_text.h"
 #include "results/object_file_version.h"
@@ -70,9 +71,20 @@ Json QuadricJson(const Ellipsoid& ellipsoid) {
 }
 
 Json ToJson(const PinholeCamera& camera) {
-  return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
-          {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
-          {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
+  Json json = {{"fx", camera.fx}, {"fy", camera.fy},       {"cx", camera.cx},
+               {"cy", camera.cy}, {"k1", camera.k1},       {"k2", camera.k2},
+               {"p1", camera.p1}, {"p2", camera.p2},       {"k3", camera.k3},
+               {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
+  for (const auto& [key, value] :
+       {std::pair("k4", camera.k4), std::pair("k5", camera.k5), std::pair("k6", camera.k6)}) {
+    if (value != 0.0) {
+      json[key] = value;
+    }
+  }
+  if (camera.IsFisheye()) {
+    json["type"] = "KannalaBrandt8";
+  }
+  return json;
 }
 
 Json ToJson(ObjectId object, const ReportedView& view) {

@@ -20,6 +20,10 @@ namespace {
 
 constexpr const char* kObservationsFile = "objects_observations.json";
 
+double NumberOrZero(const JsonNode& node, const char* key) {
+  return node.Has(key) ? node.At(key).Number() : 0.0;
+}
+
 PinholeCamera ReadCamera(const JsonNode& node) {
   PinholeCamera camera;
   camera.fx = node.At("fx").PositiveNumber(kMostPixels);
@@ -31,6 +35,15 @@ PinholeCamera ReadCamera(const JsonNode& node) {
   camera.p1 = node.At("p1").Number();
   camera.p2 = node.At("p2").Number();
   camera.k3 = node.At("k3").Number();
+  camera.k4 = NumberOrZero(node, "k4");
+  camera.k5 = NumberOrZero(node, "k5");
+  camera.k6 = NumberOrZero(node, "k6");
+  if (node.Has("type")) {
+    if (node.At("type").Text() != "KannalaBrandt8") {
+      node.At("type").Fail("\"KannalaBrandt8\"");
+    }
+    camera.lens = LensModel::kKannalaBrandt;
+  }
   camera.bf = node.At("bf").PositiveNumber(kMostPixels);
   constexpr uint32_t kLargest = 16384;
   const auto size = [&](const char* key) {

@@ -39,7 +39,7 @@ bool IsPlainName(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }
 
-// What a path is, if it is not a link. Only this program writes to a staging folder, and it makes
+// The kind of a path that is no link. Only this program writes to a staging folder, and it makes
 // no links there. They would lead to files of others, which must stay as they are.
 fs::file_type TypeOf(const fs::path& path) {
   std::error_code error;

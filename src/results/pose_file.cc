@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "files/plausible.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
+#include "util/lower_case.h"
 
 namespace hullslam {
 namespace {
@@ -40,11 +40,11 @@ std::vector<std::string> NamesOf(std::string_view header) {
   std::vector<std::string> names;
   std::string name;
   int brackets = 0;
-  for (const char c : std::string(header) + ' ') {
+  for (const char c : LowerCase(header) + ' ') {
     brackets += c == '[' || c == '(' ? 1 : c == ']' || c == ')' ? -1 : 0;
     if (std::string_view(" ,;\t\r#").find(c) == std::string_view::npos) {
       if (brackets == 0 && c != ']' && c != ')') {
-        name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        name += c;
       }
     } else if (!name.empty()) {
       names.push_back(std::exchange(name, {}));

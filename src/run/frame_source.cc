@@ -70,12 +70,21 @@ std::optional<FrameSource::LoadedImage> FrameSource::LoadNext() {
     loaded.error = error.what();
   }
   if (loaded.image) {
-    loaded.image->masks = masks_.Read(frame);
-    if (sequence_.fit_mask != nullptr) {
-      std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
-    }
+    AddMasks(frame, loaded);
   }
   return loaded;
+}
+
+void FrameSource::AddMasks(size_t frame, LoadedImage& loaded) const {
+  const NetworkMasks* const network = masks_.network();
+  if (network != nullptr && !network->IsRead(frame)) {
+    loaded.colour = network->LoadImage(frame);
+    return;
+  }
+  loaded.image->masks = masks_.Read(frame);
+  if (network == nullptr && sequence_.fit_mask != nullptr) {
+    std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
+  }
 }
 
 std::optional<LoadedFrame> FrameSource::BuildNext() {
@@ -95,6 +104,7 @@ std::optional<LoadedFrame> FrameSource::BuildNext() {
   return LoadedFrame{.frame = std::move(built),
                      .error = {},
                      .grey = keeps_images_ ? loaded->image->grey : cv::Mat(),
+                     .colour = loaded->colour,
                      .build_ms = milliseconds,
                      .delay = delay};
 }

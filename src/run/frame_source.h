@@ -22,7 +22,10 @@ namespace hullslam {
 struct LoadedFrame {
   std::optional<BuiltFrame> frame;
   std::string error;
-  cv::Mat grey = {};                               // the image; empty unless images are kept
+  cv::Mat grey = {};  // the image; empty unless images are kept
+  // The image in colour, if a network is to make masks of it after the frame was tracked; else
+  // empty.
+  cv::Mat colour = {};
   double build_ms = 0.0;                           // time of building
   std::chrono::steady_clock::duration delay = {};  // FrameSource::Pause() up to then, in all
 };
@@ -59,6 +62,7 @@ class FrameSource {
   struct LoadedImage {
     std::optional<ImageInput> image;
     std::string error;
+    cv::Mat colour = {};
   };
   using Clock = std::chrono::steady_clock;
 
@@ -66,6 +70,7 @@ class FrameSource {
   static constexpr size_t kFramesAhead = 4;
 
   std::optional<LoadedImage> LoadNext();
+  void AddMasks(size_t frame, LoadedImage& loaded) const;
   std::optional<LoadedFrame> BuildNext();
   bool WaitFor(double stamp) const;
   // The sum of all pauses so far.

@@ -50,7 +50,7 @@ class LiveOutput {
   // back. Returns how long it has waited. `on_pause` is called before it waits.
   std::chrono::steady_clock::duration BeforeFrame(FrameSource& frames, System& system,
                                                   const std::function<void()>& on_pause);
-  // What the callback of the System is given.
+  // To be called with each report of the System.
   void NoteReport(const FrameReport& report);
   // After each frame. It is the `number`-th one, counted from 1, and tracking took this time.
   void AfterFrame(const LoadedFrame& frame, size_t number, double track_ms, const System& system);

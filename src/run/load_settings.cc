@@ -42,6 +42,9 @@ void TakeReport(SettingsReport report, LoadedSettings& settings) {
   for (const std::string& warning : report.warnings) {
     PrintError("warning: {}\n", warning);
   }
+  settings.camera_note = std::move(report.camera_note);
+  settings.read_width = report.read_width;
+  settings.read_height = report.read_height;
   settings.preset_overrides = std::move(report.preset_overrides);
 }
 

@@ -23,6 +23,9 @@ struct LoadedSettings {
   SystemOptions options;
   std::optional<Preset> preset = std::nullopt;
   std::vector<PresetOverride> preset_overrides = {};
+  std::string camera_note = {};  // this and the size as in SettingsReport
+  int read_width = 0;
+  int read_height = 0;
 };
 
 // A settings file and the reason why a program takes it.

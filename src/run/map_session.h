@@ -20,7 +20,7 @@ namespace hullslam {
 // or inside of one. The file of --load-map may be replaced.
 void CheckSavedFiles(const RunArguments& arguments);
 
-// What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
+// The start of the run: the map of --load-map if it is given. Throws InputError for a map that
 // cannot be read or that was made with another camera or image pyramid, and ReadingCancelled after
 // a signal.
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "run/command_line.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -25,6 +26,19 @@ void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& f
   AddMaskFormat(app, format, "--masks-format");
 }
 
+void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every) {
+  CLI::Option* const segment =
+      app.add_option("--segment", network,
+                     "network that makes the masks, a file of ONNX (docs/segmentation.md); with "
+                     "--realtime, masks come when they are ready")
+          ->excludes("--masks");
+  app.add_option("--segment-every", every,
+                 "without --realtime: make masks of every n-th frame and of all keyframes")
+      ->check(WholeNumber(1))
+      ->needs(segment)
+      ->capture_default_str();
+}
+
 SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)
     : path_(request.path.string()), frames_(std::move(frames)) {
   if (!request.path.empty()) {
@@ -36,11 +50,20 @@ SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> 
   }
 }
 
+SequenceMasks::SequenceMasks(std::unique_ptr<const NetworkMasks> network,
+                             std::vector<MaskFrame> frames)
+    : frames_(std::move(frames)), network_(network.get()) {
+  source_ = std::move(network);
+}
+
 std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
   return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
 }
 
 std::set<std::string> SequenceMasks::Labels() const {
+  if (network_ != nullptr) {
+    return {network_->class_names().begin(), network_->class_names().end()};
+  }
   std::set<std::string> labels;
   for (size_t frame = 0; frame < frames_.size(); ++frame) {
     for (const InstanceMask& mask : Read(frame)) {
@@ -55,6 +78,9 @@ std::optional<std::string> SequenceMasks::format() const {
 }
 
 std::string SequenceMasks::Describe() const {
+  if (network_ != nullptr) {
+    return "masks are made by " + network_->Describe();
+  }
   return source_ == nullptr
              ? std::string("no masks")
              : fmt::format("masks: {} ({}), {} of {} frames have none{}{}", path_,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hullslam/masks/open_masks.h"
+#include "run/network_masks.h"
 
 namespace CLI {
 class App;
@@ -19,6 +20,8 @@ namespace hullslam {
 
 // Adds --masks and --masks-format, which write to `path` and `format`. Both must outlive the app.
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
+// Adds --segment and --segment-every, after AddMaskArguments().
+void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every);
 // Adds only the option for the format, under the given names, for programs that take the masks as a
 // positional argument.
 void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
@@ -30,10 +33,14 @@ class SequenceMasks {
   // Throws InputError if OpenMasks() or CheckMasks() refuses the masks, or if a format is given
   // without a path.
   SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames);
+  // Masks that are made when they are read.
+  SequenceMasks(std::unique_ptr<const NetworkMasks> network, std::vector<MaskFrame> frames);
 
   // The masks of the frame with this index. May be called by another thread.
   std::vector<InstanceMask> Read(size_t frame) const;
-  // The classes of all masks of all frames. Reads them all.
+  // Null for masks from files. Those of a network are in the pixels of the images as loaded.
+  const NetworkMasks* network() const { return network_; }
+  // The classes of all masks of all frames, which are all read, or those that the network knows.
   std::set<std::string> Labels() const;
   std::optional<std::string> format() const;
   size_t without_masks() const { return counts_.without_masks; }  // frames
@@ -43,6 +50,7 @@ class SequenceMasks {
   std::string path_;
   std::vector<MaskFrame> frames_;
   std::unique_ptr<const MaskSource> source_;
+  const NetworkMasks* network_ = nullptr;  // the source, if it is a network
   MaskCounts counts_;
 };
 

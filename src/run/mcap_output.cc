@@ -7,14 +7,15 @@
 
 #include "hullslam/util/error.h"
 #include "run/messages.h"
+#include "util/components.h"
 
 namespace hullslam {
 
 void AddMcapOption(CLI::App& app, std::filesystem::path& file) {
-  app.add_option(
-      "--mcap", file,
-      "file for a recording of the run, to be played by Foxglove, Rerun or ROS 2: images, "
-      "poses, landmarks and objects; replaces an earlier one");
+  app.add_option("--mcap", file,
+                 "file for a recording of the run, to be played by Foxglove, Rerun or ROS 2: "
+                 "images, poses, landmarks and objects; replaces an earlier one")
+      ->each([](const std::string&) { RequireComponent("BAGS", "--mcap is given"); });
 }
 
 std::string WriteMcap(const RunArguments& arguments, const RecordedRun& run) {

@@ -8,6 +8,7 @@
 
 #include "files/atomic_file.h"
 #include "run/messages.h"
+#include "util/components.h"
 #include "view/report.h"
 
 namespace hullslam {
@@ -27,7 +28,8 @@ std::string PageOf(const Report& report) {
 void AddReportFlag(CLI::App& app, bool& report) {
   app.add_flag("--report", report,
                "also write report.html to the output folder: the map in 3D, errors, times, images "
-               "and objects, to be opened in a browser");
+               "and objects, to be opened in a browser")
+      ->each([](const std::string&) { RequireComponent("LIVE", "--report is given"); });
 }
 
 std::string WriteReport(const fs::path& folder, const Map& map, const SystemOptions& options,

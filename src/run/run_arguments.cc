@@ -87,6 +87,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   }
   AddGroundtruth(app, help, arguments);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  AddNetworkArguments(app, arguments.segment, arguments.segment_every);
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);
   app.add_option("--save-map", arguments.save_map,

@@ -12,6 +12,7 @@
 #include "run/live_output.h"
 #include "run/program.h"
 #include "run/slam_run.h"
+#include "sequences/resized_images.h"
 
 namespace hullslam {
 namespace {
@@ -38,6 +39,13 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   if (arguments.groundtruth == "none" ||
       (!arguments.groundtruth.empty() && !dataset.ReadsGroundtruth())) {
     UseGivenGroundtruth(arguments.groundtruth, dataset.ExpectedStamps(), input.sequence);
+  }
+  if (input.settings.read_width > 0) {
+    ResizeImages(input.settings.read_width, input.settings.read_height,
+                 input.settings.options.camera, input.sequence);
+    if (!arguments.quiet) {
+      input.notes.push_back("images are resized from " + input.sequence.choices["resized_from"]);
+    }
   }
   PrintWarnings(input.sequence);
   return RunSlam(arguments, std::move(input.settings), input.sequence, input.notes);

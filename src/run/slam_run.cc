@@ -19,6 +19,7 @@
 #include "run/frame_source.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
+#include "run/late_masks.h"
 #include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
@@ -105,10 +106,39 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
                           .is_unsure = report.tracked.is_unsure});
 }
 
+// The masks from files, or from a network. In real time the network has none before tracking.
+SequenceMasks OpenRunMasks(const RunArguments& arguments, const ImageSequence& sequence,
+                           const PinholeCamera& camera) {
+  if (arguments.segment.empty()) {
+    return SequenceMasks({arguments.masks, arguments.masks_format,
+                          sequence.read_width > 0 ? sequence.read_width : camera.width,
+                          sequence.read_height > 0 ? sequence.read_height : camera.height},
+                         MaskFrames(sequence));
+  }
+  // In real time a second thread of the network would only take time from tracking.
+  const SegmenterOptions options = {.threads = arguments.realtime ? 1 : 0};
+  return SequenceMasks(std::make_unique<NetworkMasks>(
+                           arguments.segment, options,
+                           arguments.realtime ? 0 : arguments.segment_every, sequence, camera),
+                       MaskFrames(sequence));
+}
+
+// Null if all frames are tracked with their masks.
+std::unique_ptr<LateMasks> MakeLateMasks(const RunArguments& arguments, const SequenceMasks& masks,
+                                         System& system) {
+  if (masks.network() == nullptr || masks.network()->IsRead(1)) {
+    return nullptr;
+  }
+  return std::make_unique<LateMasks>(
+      arguments.realtime ? LateMasks::Pace::kNeverWait : LateMasks::Pace::kWait, *masks.network(),
+      system);
+}
+
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system,
                    LiveOutput& live) {
   RunResult result;
+  const std::unique_ptr<LateMasks> late_masks = MakeLateMasks(arguments, masks, system);
   Progress progress(sequence.frames.size(), arguments.quiet);
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
@@ -142,11 +172,17 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
     }
     const Clock::time_point begin = Clock::now();
     const TrackedFrame frame = system.Track(std::move(*loaded->frame));
+    if (late_masks != nullptr) {
+      late_masks->AfterFrame(frame, loaded->colour);
+    }
     live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), system);
     progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
   }
   progress.Clear();
   system.SetFrameCallback({});
+  if (late_masks != nullptr) {
+    late_masks->Finish();
+  }
   live.BeginFinishing();
   FinishMap(arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
@@ -157,6 +193,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
   return {arguments.sequence,
           arguments.masks,
+          arguments.segment,
           arguments.settings,
           arguments.associations,
           arguments.vocabulary,
@@ -171,7 +208,15 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
-  WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
+  if (masks.network() == nullptr) {
+    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) {
+      std::vector<InstanceMask> found = masks.Read(frame);
+      if (sequence.fit_mask != nullptr) {
+        std::ranges::for_each(found, sequence.fit_mask);
+      }
+      return found;
+    });
+  }
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
 }
@@ -184,6 +229,9 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
+  }
+  if (!settings.camera_note.empty()) {
+    Print("camera: {}\n", settings.camera_note);
   }
   if (settings.preset) {
     Print("{}\n", DescribePreset(settings));
@@ -207,7 +255,7 @@ double DepthPixel(const ImageInput& image) {
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes) {
-  CheckPresetHasMasks(settings, arguments.masks);
+  CheckPresetHasMasks(settings, arguments.segment.empty() ? arguments.masks : arguments.segment);
   SystemOptions& options = settings.options;
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
@@ -222,9 +270,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
         options.depth.error.disparity_sigma);
   }
   const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
-  const SequenceMasks masks(
-      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
-      MaskFrames(sequence));
+  const SequenceMasks masks = OpenRunMasks(arguments, sequence, options.camera);
   CatchInterrupts();
   CheckSavedFiles(arguments);
   SystemStart start = LoadStart(arguments, options);

@@ -65,8 +65,12 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
   if (options.alignment == AlignmentKind::kSe3) {
     WarnOfScale(groundtruth, trajectory, ate.errors.rmse);
   }
-  const RpeReport rpe =
-      EvaluateRpe(groundtruth, Scaled(trajectory, ate.reference_from_estimate.scale));
+  const Trajectory scaled = Scaled(trajectory, ate.reference_from_estimate.scale);
+  const RpeReport rpe = EvaluateRpe(groundtruth, scaled);
+  if (const std::string swapped = DescribeSwappedRotations(groundtruth, scaled, rpe);
+      !swapped.empty()) {
+    PrintError("warning: {}\n", swapped);
+  }
   if (rpe.ok()) {
     summary.rpe_rmse_m = rpe.translation.rmse;
     summary.rpe_rmse_deg = rpe.rotation.rmse;

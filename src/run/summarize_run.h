@@ -19,7 +19,7 @@
 
 namespace hullslam {
 
-// What happened during a run, as far as the system does not know it.
+// The events of a run that the system does not know.
 struct RunResult {
   size_t given = 0;    // frames that were loaded or skipped before the run ended
   size_t skipped = 0;  // frames with an image that cannot be read
@@ -29,7 +29,7 @@ struct RunResult {
   MappedVector<FrameNote> notes;  // one per frame of the system
 };
 
-// What summary.json says of a finished run, but for its masks and objects. Errors are only known
+// The content of summary.json for a finished run, but for masks and objects. Errors are only known
 // with ground truth, which may be absent.
 RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& settings,
                         const ImageSequence& sequence, const RunResult& result,

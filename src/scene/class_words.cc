@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "util/lower_case.h"
+
 namespace hullslam {
 namespace {
 
@@ -37,7 +39,7 @@ bool BeginsWith(std::span<const std::string> words, const std::vector<std::strin
 std::vector<std::string> SplitWords(std::string_view text) {
   std::vector<std::string> words;
   bool is_open = false;
-  for (const char c : text) {
+  for (const char c : LowerCase(text)) {
     if (!IsInWord(c)) {
       is_open = false;
       continue;
@@ -46,8 +48,7 @@ std::vector<std::string> SplitWords(std::string_view text) {
       words.emplace_back();
       is_open = true;
     }
-    const auto byte = static_cast<unsigned char>(c);
-    words.back() += byte < 0x80 ? static_cast<char>(std::tolower(byte)) : c;
+    words.back() += c;
   }
   return words;
 }

@@ -12,7 +12,7 @@
 
 namespace hullslam {
 
-// What the keyframes that show two objects tell about them. The first object is A, the second B.
+// Counts of the keyframes that show two objects. The first object is A, the second B.
 struct JointViews {
   size_t views = 0;        // keyframes that observe both
   size_t in_front = 0;     // of these, the ones in which A is before B: nearer, and across from it

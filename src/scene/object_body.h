@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// What relations are computed from: the space that an object takes up, in an upright frame. This
+// The space that an object takes up, in an upright frame; relations are computed from it. This
 // frame has the origin and the unit of the world, and z upwards.
 struct ObjectBody {
   ObjectId id;

@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// What a question can ask for: the relations of a scene, their inverses, and the distance.
+// The relations in questions: those of a scene, their inverses, and the distance.
 enum class AskedRelation {
   kOn,
   kUnder,  // the inverse of "on"

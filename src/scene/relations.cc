@@ -80,7 +80,7 @@ std::vector<std::optional<Holder>> FindHolders(std::span<const ObjectBody> bodie
   return holders;
 }
 
-// What an object stands on: a surface, another object, or nothing that is known.
+// The support of an object: a surface, another object, or none that is known.
 struct Stand {
   const Surface* surface = nullptr;
   ObjectId object;

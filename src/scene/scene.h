@@ -41,7 +41,7 @@ struct SceneObject {
   double first_seen = 0.0;  // s, time stamps of the first and the last of them
   double last_seen = 0.0;
   double quality = 0.0;  // QualityOf()
-  // What it looks like: the mean of the vectors of its masks, weighted by their scores, with length
+  // Its appearance: the mean of the vectors of its masks, weighted by their scores, with length
   // 1. Empty if no mask has a vector.
   std::vector<float> embedding = {};
 };

@@ -28,7 +28,7 @@ constexpr int kHalf = 64;                 // patches of a half of the sphere
 constexpr int kPatches = 2 * kHalf;       // patch i + kHalf is opposite to patch i
 constexpr double kLeastVariance = 1e-18;  // m^2, so that exact lines have a weight
 
-// What one line tells about the ellipsoid.
+// The contribution of one line to the covariance.
 struct LineTerm {
   size_t patch = 0;     // of the normal
   Gradient gradient;    // of the excess

@@ -16,7 +16,7 @@ namespace hullslam {
 // kEither is grey with 16 bits (mono16): cameras of 10 to 16 bits have it, and some depth cameras.
 enum class BagImageKind { kColour, kDepth, kEither, kUnknown };
 
-// What an image shows, by the encoding of a raw image or the format of a compressed one.
+// The kind of an image, by the encoding of a raw image or the format of a compressed one.
 BagImageKind KindOfEncoding(std::string_view encoding);
 BagImageKind KindOfFormat(std::string_view format);
 // The names of the encodings of raw images that are read.

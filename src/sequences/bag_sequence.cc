@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "bags/bag.h"
 #include "camera/fit_depth.h"
+#include "camera/named_lens.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/stamp_pairing.h"
 #include "sequences/bag_image.h"
@@ -283,18 +285,11 @@ CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
   const auto fail = [&](const std::string& fault) {
     throw InputError(fmt::format("{}: {}; expected --settings FILE", place, fault));
   };
-  // plumb_bob has k1 k2 p1 p2 k3; rational_polynomial has three more, which divide. "Brown Conrady"
-  // is librealsense's name of plumb_bob. Without distortion, all models are the same.
-  const std::string& model = info.distortion_model;
-  const bool is_rational = model == "rational_polynomial";
-  const bool is_known = model == "plumb_bob" || is_rational || model == "Brown Conrady";
-  const auto is_zero = [](double number) { return number == 0.0; };
-  const size_t read = is_known ? std::min<size_t>(5, info.distortion.size()) : 0;
-  if (!std::all_of(info.distortion.begin() + static_cast<ptrdiff_t>(read), info.distortion.end(),
-                   is_zero)) {
-    fail(fmt::format("the distortion is '{}' with {} coefficients{}, expected plumb_bob",
-                     ShowText(model, 40), info.distortion.size(),
-                     is_rational ? ", which HullSLAM cannot use yet" : ""));
+  PinholeCamera camera;
+  if (const std::string expected = SetNamedLens(info.distortion_model, info.distortion, camera);
+      !expected.empty()) {
+    fail(fmt::format("the distortion is '{}' with {} coefficients, {}",
+                     ShowText(info.distortion_model, 40), info.distortion.size(), expected));
   }
   if (info.k[0] == 0.0) {
     fail("the camera is not calibrated, its matrix K is 0");
@@ -302,21 +297,13 @@ CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
   if (info.width > kMostImagePixels || info.height > kMostImagePixels) {
     fail(fmt::format("the camera has {}x{} px", info.width, info.height));
   }
-  const auto coefficient = [&](size_t i) {
-    return i < info.distortion.size() ? info.distortion[i] : 0.0;
-  };
-  return {.camera = {.fx = info.k[0],
-                     .fy = info.k[4],
-                     .cx = info.k[2],
-                     .cy = info.k[5],
-                     .k1 = coefficient(0),
-                     .k2 = coefficient(1),
-                     .p1 = coefficient(2),
-                     .p2 = coefficient(3),
-                     .k3 = coefficient(4),
-                     .width = static_cast<int>(info.width),
-                     .height = static_cast<int>(info.height)},
-          .frames_per_second = frames_per_second};
+  camera.fx = info.k[0];
+  camera.fy = info.k[4];
+  camera.cx = info.k[2];
+  camera.cy = info.k[5];
+  camera.width = static_cast<int>(info.width);
+  camera.height = static_cast<int>(info.height);
+  return {.camera = camera, .frames_per_second = frames_per_second};
 }
 
 // The mean over all images.

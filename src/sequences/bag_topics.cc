@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -14,6 +13,7 @@
 
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "util/lower_case.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -103,8 +103,7 @@ std::string ListTopics(const BagIndex& index) {
 
 // Whether a name has one of these words, in upper or lower case.
 bool HasAny(std::string name, std::initializer_list<std::string_view> words) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  name = LowerCase(name);
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }

@@ -20,6 +20,7 @@
 #include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"
 #include "settings/rotation_matrix.h"
+#include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
 
@@ -49,21 +50,16 @@ Rigid3 ReadPose(const YamlMap& file, const char* key) {
 
 EurocCamera ParseCamera(const YamlMap& file) {
   ExpectText(file, "camera_model", "pinhole");
-  ExpectText(file, "distortion_model", "radial-tangential");
   const std::vector<double> focal = file.Numbers("intrinsics", 4, "fu fv cu cv");
-  const std::vector<double> lens = file.Numbers("distortion_coefficients", 4, "k1 k2 p1 p2");
   const std::vector<double> size = file.Numbers("resolution", 2, "width height");
   EurocCamera camera;
   camera.calibration.camera = {.fx = focal[0],
                                .fy = focal[1],
                                .cx = focal[2],
                                .cy = focal[3],
-                               .k1 = lens[0],
-                               .k2 = lens[1],
-                               .p1 = lens[2],
-                               .p2 = lens[3],
                                .width = file.Pixels("resolution", size[0]),
                                .height = file.Pixels("resolution", size[1])};
+  ReadLens(file, "distortion_model", "distortion_coefficients", camera.calibration.camera);
   camera.calibration.frames_per_second = file.Number("rate_hz");
   camera.body_from_cam = ReadPose(file, "T_BS");
   return camera;

@@ -14,18 +14,12 @@
 #include "files/natural_order.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "util/lower_case.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // The last number in a name: "12.5" of "left_12.5" and "0007" of "frame-0007.color".
 std::string_view LastNumber(std::string_view name) {
@@ -117,7 +111,7 @@ std::vector<fs::path> ListImages(const fs::path& folder, std::string_view part) 
     if (file.filename().string().find(part) == std::string::npos) {
       continue;
     }
-    const std::string extension = LowerExtension(file);
+    const std::string extension = LowerCase(file.extension().string());
     if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end()) {
       throw InputError(file.string() + ": is neither a PNG nor a JPEG image, expected only those");
     }

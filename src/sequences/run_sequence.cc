@@ -15,6 +15,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
+#include "sequences/resized_images.h"
 #include "settings/stereo_settings.h"
 #include "util/shown_text.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a sequence of any kind is opened with.
+// The arguments with which a sequence of any kind is opened.
 struct Reopening {
   const SequenceOfRun& run;
   const fs::path& path;
@@ -136,7 +137,10 @@ ImageSequence OpenRunSequence(const SequenceOfRun& run, const fs::path& path,
   std::string known;
   for (const NamedDataset& dataset : kDatasets) {
     if (run.dataset == dataset.name) {
-      return dataset.open({run, path, camera, use_depth});
+      const Reopening opening{run, path, camera, use_depth};
+      ImageSequence sequence = dataset.open(opening);
+      ResizeImages(opening.Choice("resized_from"), camera, sequence);
+      return sequence;
     }
     known += (known.empty() ? "" : ", ") + std::string(dataset.name);
   }

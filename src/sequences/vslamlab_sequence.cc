@@ -19,6 +19,7 @@
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
 #include "settings/rotation_matrix.h"
+#include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
@@ -42,25 +43,11 @@ YamlMap FindCamera(const fs::path& file, const std::string& name) {
                                ShowText(name), fmt::join(names, ", ")));
 }
 
-void ReadLens(const YamlMap& entry, PinholeCamera& camera) {
-  const std::string model =
-      entry.Has("distortion_type") ? entry.Text("distortion_type") : entry.Text("cam_model");
-  const bool has_k3 = model == "radtan5";
-  if (model == "pinhole") {
-    return;
+void ReadLensOf(const YamlMap& entry, PinholeCamera& camera) {
+  const char* const key = entry.Has("distortion_type") ? "distortion_type" : "cam_model";
+  if (entry.Text(key) != "pinhole") {
+    ReadLens(entry, key, "distortion_coefficients", camera);
   }
-  if (model != "radtan4" && !has_k3) {
-    entry.Fail("cam_model", fmt::format("is '{}', expected pinhole, radtan4 or radtan5; HullSLAM "
-                                        "has no other model",
-                                        ShowText(model)));
-  }
-  const std::vector<double> lens = entry.Numbers("distortion_coefficients", has_k3 ? 5 : 4,
-                                                 has_k3 ? "k1 k2 p1 p2 k3" : "k1 k2 p1 p2");
-  camera.k1 = lens[0];
-  camera.k2 = lens[1];
-  camera.p1 = lens[2];
-  camera.p2 = lens[3];
-  camera.k3 = has_k3 ? lens[4] : 0.0;
 }
 
 VslamlabCamera ReadEntry(const YamlMap& entry) {
@@ -76,7 +63,7 @@ VslamlabCamera ReadEntry(const YamlMap& entry) {
   camera.cy = center[1];
   camera.width = entry.Pixels("image_dimension", size[0]);
   camera.height = entry.Pixels("image_dimension", size[1]);
-  ReadLens(entry, camera);
+  ReadLensOf(entry, camera);
   result.calibration.frames_per_second = entry.Number("fps");
   if (entry.Has("depth_name")) {
     result.depth_name = entry.Text("depth_name");

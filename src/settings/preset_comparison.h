@@ -27,7 +27,7 @@ class PresetComparison {
   std::map<std::string, std::string> values_;  // by key
 };
 
-// What a user should be told about an override by a settings file.
+// The message for a user about an override by a settings file.
 std::string Describe(const PresetOverride& replaced, const Preset& preset);
 
 }  // namespace hullslam

@@ -15,13 +15,18 @@
 #include <system_error>
 #include <utility>
 
+#include "camera/named_lens.h"
 #include "files/data_path.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
+#include "settings/calibration_file.h"
 #include "settings/preset_comparison.h"
+#include "settings/resize_settings.h"
 #include "settings/settings_orb_slam3.h"
 #include "settings/stereo_settings.h"
+#include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
+#include "util/lower_case.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
 
@@ -50,23 +55,6 @@ std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
   return text.substr(text.find('-') + 1);
 }
 
-// Refuses the numbers of the rational model of distortion by its name. Zeros mean that the lens has
-// no such distortion.
-bool IsOfRationalModel(const WrittenSetting& setting) {
-  constexpr std::array kKeys = {"Camera.k4", "Camera.k5", "Camera.k6"};
-  if (std::find(kKeys.begin(), kKeys.end(), setting.key) == kKeys.end()) {
-    return false;
-  }
-  double value = 0.0;
-  if (!ParseFinite(setting.text, value) || value != 0.0) {
-    throw InputError(
-        fmt::format("{}: {} is '{}', expected 0: it belongs to the rational model of distortion "
-                    "(rational_polynomial of ROS), which HullSLAM cannot use yet",
-                    setting.origin, setting.name, setting.text));
-  }
-  return true;
-}
-
 // The options of a run while they are being set.
 class SettingsInProgress {
  public:
@@ -87,11 +75,11 @@ class SettingsInProgress {
       origins_[changed] = origin;
     }
   }
-  void ApplyFile(const fs::path& file);
+  void ApplyFile(const fs::path& file, const YAML::Node& root);
   void ApplyCalibration(const CameraCalibration& calibration, const std::string& source);
   void ApplyOverrides();
   bool IsGiven(const std::string& key) const { return given_.contains(key); }
-  // What must come after all settings were set: follows the size of the image and validates the
+  // The steps after all settings were set: follows the size of the image and validates the
   // options.
   SystemOptions Finish(SettingsReport& report);
 
@@ -103,14 +91,15 @@ class SettingsInProgress {
   const SettingsSources& sources_;
   SystemOptions options_;
   OptionTable table_;
+  ResizeSettings resize_;
   std::optional<PresetComparison> comparison_;
   std::set<std::string> given_;                 // keys that were set, also by the preset
   std::map<std::string, std::string> origins_;  // of the keys that were set since the preset
 };
 
-void SettingsInProgress::ApplyFile(const fs::path& file) {
+void SettingsInProgress::ApplyFile(const fs::path& file, const YAML::Node& root) {
   std::set<std::string> in_file;
-  for (const WrittenSetting& setting : TranslateOrb3Settings(ReadYamlSettings(file))) {
+  for (const WrittenSetting& setting : TranslateOrb3Settings(ReadYamlSettings(file, root))) {
     if (IsStereoKey(setting.key)) {
       continue;  // read by MakeRectifier()
     }
@@ -119,7 +108,7 @@ void SettingsInProgress::ApplyFile(const fs::path& file) {
       throw InputError(
           fmt::format("{}: {} was given before under another name", setting.origin, setting.name));
     }
-    if (IsOfRationalModel(setting)) {
+    if (resize_.Take(setting.key, setting.text, setting.origin)) {
       continue;
     }
     std::string text = TextOf(setting, table_);
@@ -154,8 +143,11 @@ void SettingsInProgress::ApplyOverrides() {
       throw InputError(fmt::format("{}: '{}', expected key=value", sources_.overrides_origin,
                                    ShowText(assignment)));
     }
-    Set(std::string(Trim(assignment.substr(0, equals))),
-        std::string(Trim(assignment.substr(equals + 1))), sources_.overrides_origin);
+    const std::string key(Trim(assignment.substr(0, equals)));
+    const std::string value(Trim(assignment.substr(equals + 1)));
+    if (!resize_.Take(key, value, sources_.overrides_origin)) {
+      Set(key, value, sources_.overrides_origin);
+    }
   }
 }
 
@@ -210,6 +202,11 @@ void SettingsInProgress::ReportOverrides(SettingsReport& report) const {
 }
 
 SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
+  if (const PinholeCamera read = options_.camera; resize_.Changes(read)) {
+    report.read_width = read.width;
+    report.read_height = read.height;
+    options_.camera = resize_.Resized(read);
+  }
   const std::string of_image = FollowImage();
   const std::string of_shutter = FollowShutter();
   options_.Validate();
@@ -226,8 +223,7 @@ SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
 // The number of the TUM camera in a name, such as "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 if
 // there is none.
 int TumCamera(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  name = LowerCase(name);
   for (const std::string_view mark : {"freiburg", "fr"}) {
     const size_t at = name.find(mark);
     const size_t digit = at + mark.size();
@@ -239,6 +235,17 @@ int TumCamera(std::string name) {
     }
   }
   return 0;
+}
+
+// Empty for a settings file with a lens that needs no mention.
+std::string DescribeCamera(const std::string& program, const PinholeCamera& camera) {
+  const bool is_usual =
+      !camera.IsFisheye() && camera.k4 == 0.0 && camera.k5 == 0.0 && camera.k6 == 0.0;
+  if (program.empty() && is_usual) {
+    return {};
+  }
+  return fmt::format("{}{}x{} px, {}", program.empty() ? "" : program + ": ", camera.width,
+                     camera.height, DescribeLens(camera));
 }
 
 std::string FolderName(const fs::path& folder) {
@@ -253,7 +260,13 @@ std::string FolderName(const fs::path& folder) {
 SystemOptions ReadSettings(const fs::path& file, const SettingsSources& sources,
                            SettingsReport& report) {
   SettingsInProgress settings(sources);
-  settings.ApplyFile(file);
+  const YAML::Node root = ReadYaml(file);
+  const std::optional<RecognisedCalibration> recognised = RecogniseCalibration(file, root);
+  if (recognised) {
+    settings.ApplyCalibration(recognised->calibration, file.string());
+  } else {
+    settings.ApplyFile(file, root);
+  }
   settings.ApplyOverrides();
   for (const char* const key : kIntrinsics) {
     if (!settings.IsGiven(key)) {
@@ -261,7 +274,9 @@ SystemOptions ReadSettings(const fs::path& file, const SettingsSources& sources,
                        " is not given, expected the intrinsics of the camera in px");
     }
   }
-  return settings.Finish(report);
+  SystemOptions options = settings.Finish(report);
+  report.camera_note = DescribeCamera(recognised ? recognised->program : "", options.camera);
+  return options;
 }
 
 SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,

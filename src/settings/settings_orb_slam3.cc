@@ -25,7 +25,6 @@ enum class Kind {
   kBaseline,  // Stereo.b, the baseline in m; Camera.bf is this times Camera.fx
   kVersion,   // File.version
   kModel,     // Camera.type
-  kSize,      // the size to which images are resized; must equal `key`, their own size
   kRefused,   // cannot be translated; `why` is the reason
 };
 
@@ -36,7 +35,7 @@ struct Entry {
   std::string_view why = {};
 };
 
-constexpr std::array<Entry, 21> kEntries = {{
+constexpr std::array<Entry, 26> kEntries = {{
     {"File.version", Kind::kVersion},
     {"Camera.type", Kind::kModel},
     {"Camera1.fx", Kind::kRenamed, "Camera.fx"},
@@ -46,10 +45,11 @@ constexpr std::array<Entry, 21> kEntries = {{
     {"Camera1.k1", Kind::kRenamed, "Camera.k1"},
     {"Camera1.k2", Kind::kRenamed, "Camera.k2"},
     {"Camera1.k3", Kind::kRenamed, "Camera.k3"},
+    {"Camera1.k4", Kind::kRenamed, "Camera.k4"},
+    {"Camera1.k5", Kind::kRenamed, "Camera.k5"},
+    {"Camera1.k6", Kind::kRenamed, "Camera.k6"},
     {"Camera1.p1", Kind::kRenamed, "Camera.p1"},
     {"Camera1.p2", Kind::kRenamed, "Camera.p2"},
-    {"Camera.newWidth", Kind::kSize, "Camera.width"},
-    {"Camera.newHeight", Kind::kSize, "Camera.height"},
     {"RGBD.DepthMapFactor", Kind::kRenamed, "DepthMapFactor"},
     {"Stereo.ThDepth", Kind::kRenamed, "ThDepth"},
     {"Stereo.b", Kind::kBaseline},
@@ -57,6 +57,11 @@ constexpr std::array<Entry, 21> kEntries = {{
     {"System.LoadAtlasFromFile", Kind::kRefused, {}, "HullSLAM cannot load maps of ORB-SLAM3"},
     {"System.SaveAtlasToFile", Kind::kRefused, {}, "HullSLAM cannot save maps of ORB-SLAM3"},
     {"Viewer.imageViewScale", Kind::kIgnored},
+    // Where the images of a fisheye pair overlap. They are rectified here.
+    {"Camera1.overlappingBegin", Kind::kIgnored},
+    {"Camera1.overlappingEnd", Kind::kIgnored},
+    {"Camera2.overlappingBegin", Kind::kIgnored},
+    {"Camera2.overlappingEnd", Kind::kIgnored},
     {"loopClosing", Kind::kRenamed, "loop.closing"},
 }};
 
@@ -114,8 +119,13 @@ class Translator {
         ExpectText(setting, {"1.0"}, "");
         return;
       case Kind::kModel:
-        ExpectText(setting, {"PinHole", "Rectified"}, "; HullSLAM has no other camera model");
+        ExpectText(setting, {"PinHole", "Rectified", "KannalaBrandt8"},
+                   "; HullSLAM has no other camera model");
         is_rectified_ = setting.text == "Rectified";
+        if (!is_rectified_) {
+          setting.key = "Camera.type";
+          settings_.push_back(std::move(setting));
+        }
         return;
       case Kind::kRenamed:
         settings_.push_back(std::move(setting));
@@ -123,15 +133,11 @@ class Translator {
       case Kind::kBaseline:
         baseline_ = std::move(setting);
         return;
-      case Kind::kSize:
-        sizes_.push_back(std::move(setting));
-        return;
     }
   }
 
   std::vector<WrittenSetting> Finish() {
     AddBaseline();
-    CheckSizes();
     CheckRectified();
     return std::move(settings_);
   }
@@ -159,20 +165,6 @@ class Translator {
     }
   }
 
-  void CheckSizes() const {
-    for (const WrittenSetting& size : sizes_) {
-      const double value = PositiveNumber(size);
-      const auto own = Number(size.key);
-      if (own != value) {
-        throw InputError(
-            fmt::format("{}: {} is '{}', expected {}, {}: HullSLAM does not resize "
-                        "images",
-                        size.origin, size.name, value, size.key,
-                        own ? fmt::format("'{}'", *own) : "which is not given"));
-      }
-    }
-  }
-
   void CheckRectified() const {
     for (const WrittenSetting& setting : settings_) {
       const bool is_distortion =
@@ -186,7 +178,6 @@ class Translator {
 
   std::vector<WrittenSetting> settings_;
   std::optional<WrittenSetting> baseline_;
-  std::vector<WrittenSetting> sizes_;
   bool is_rectified_ = false;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/named_lens.h"
 #include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
 
@@ -35,18 +36,17 @@ Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
 
 PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
   const std::vector<double> k = MatrixOf(file, side + ".K", 9);
-  const std::vector<double> d = MatrixOf(file, side + ".D", 5);
-  return {.fx = k[0],
-          .fy = k[4],
-          .cx = k[2],
-          .cy = k[5],
-          .k1 = d[0],
-          .k2 = d[1],
-          .p1 = d[2],
-          .p2 = d[3],
-          .k3 = d[4],
-          .width = file.Pixels(side + ".width", file.Number(side + ".width")),
-          .height = file.Pixels(side + ".height", file.Number(side + ".height"))};
+  PinholeCamera camera{.fx = k[0],
+                       .fy = k[4],
+                       .cx = k[2],
+                       .cy = k[5],
+                       .width = file.Pixels(side + ".width", file.Number(side + ".width")),
+                       .height = file.Pixels(side + ".height", file.Number(side + ".height"))};
+  const std::vector<double> d = file.Map(side + ".D").Numbers("data");
+  if (const std::string expected = SetNamedLens("opencv", d, camera); !expected.empty()) {
+    file.Fail(side + ".D", fmt::format("has {} number(s), {}", d.size(), expected));
+  }
+  return camera;
 }
 
 Eigen::Quaterniond RectifyingRotation(const YamlMap& file, const std::string& key) {
@@ -87,6 +87,9 @@ StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   pair.right.p1 = number("p1");
   pair.right.p2 = number("p2");
   pair.right.k3 = number("k3");
+  pair.right.k4 = number("k4");
+  pair.right.k5 = number("k5");
+  pair.right.k6 = number("k6");
   const std::string key(kPose);
   const std::vector<double> t = MatrixOf(file, key, 16);
   const Eigen::Matrix4d left_from_right =

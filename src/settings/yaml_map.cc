@@ -93,7 +93,10 @@ std::optional<double> NumberOf(const YAML::Node& node) {
 }
 
 YamlMap::YamlMap(fs::path file, std::string kind)
-    : file_(std::move(file)), kind_(std::move(kind)), node_(ReadYaml(file_)) {
+    : YamlMap(file, std::move(kind), ReadYaml(file)) {}
+
+YamlMap::YamlMap(fs::path file, std::string kind, YAML::Node root)
+    : file_(std::move(file)), kind_(std::move(kind)), node_(std::move(root)) {
   if (!node_.IsMap()) {
     throw InputError(fmt::format("{}: has no keys, expected {}", file_.string(), kind_));
   }
@@ -154,8 +157,20 @@ std::vector<double> YamlMap::Numbers(std::string_view key, size_t count,
     Fail(key, fmt::format("has {} value(s), expected {} numbers: {}",
                           node.IsSequence() ? node.size() : 1, count, names));
   }
+  return Numbers(key, node);
+}
+
+std::vector<double> YamlMap::Numbers(std::string_view key) const {
+  const YAML::Node node = Find(key);
+  if (!node.IsSequence()) {
+    Fail(key, "is not a list of numbers");
+  }
+  return Numbers(key, node);
+}
+
+std::vector<double> YamlMap::Numbers(std::string_view key, const YAML::Node& list) const {
   std::vector<double> numbers;
-  for (const YAML::Node& element : node) {
+  for (const YAML::Node& element : list) {
     numbers.push_back(Number(key, element));
   }
   return numbers;

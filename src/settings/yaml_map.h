@@ -30,6 +30,8 @@ class YamlMap {
   // The map at the top level of `file`. `kind` says in messages what the file should be, such as
   // "a sensor.yaml of EuRoC". Throws InputError if there is none.
   YamlMap(std::filesystem::path file, std::string kind);
+  // The same for a file that was read already, since a pipe can be read only once.
+  YamlMap(std::filesystem::path file, std::string kind, YAML::Node root);
 
   bool Has(std::string_view key) const;
   // These throw InputError if the key is not given or has another kind of value.
@@ -37,6 +39,7 @@ class YamlMap {
   double Number(std::string_view key) const;
   // `names` says in messages what the numbers are.
   std::vector<double> Numbers(std::string_view key, size_t count, std::string_view names) const;
+  std::vector<double> Numbers(std::string_view key) const;  // as many as there are
   std::vector<std::string> Texts(std::string_view key, size_t count, std::string_view names) const;
   int Pixels(std::string_view key, double value) const;  // a whole number from 1 to 1e6
   YamlMap Map(std::string_view key) const;
@@ -49,6 +52,7 @@ class YamlMap {
   YamlMap(const YamlMap& parent, std::string_view key, YAML::Node node);
   YAML::Node Find(std::string_view key) const;
   double Number(std::string_view key, const YAML::Node& node) const;
+  std::vector<double> Numbers(std::string_view key, const YAML::Node& list) const;
 
   std::filesystem::path file_;
   std::string kind_;

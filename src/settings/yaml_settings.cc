@@ -61,7 +61,10 @@ WrittenSetting ToSetting(const YAML::Node& key, const YAML::Node& value, const f
 }  // namespace
 
 std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
-  const YAML::Node root = ReadYaml(file);
+  return ReadYamlSettings(file, ReadYaml(file));
+}
+
+std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file, const YAML::Node& root) {
   if (!root.IsMap()) {
     throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <yaml-cpp/node/node.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -27,6 +29,9 @@ struct WrittenSetting {
 // Reads a file of `key: value` lines as ReadYaml() does. The settings are in the order of the file.
 // Throws InputError with file and line if the file has another format or gives a key twice.
 std::vector<WrittenSetting> ReadYamlSettings(const std::filesystem::path& file);
+// The same for a file that ReadYaml() has read.
+std::vector<WrittenSetting> ReadYamlSettings(const std::filesystem::path& file,
+                                             const YAML::Node& root);
 
 // The text of the setting. Throws InputError if it is not a single value.
 const std::string& SingleValue(const WrittenSetting& setting);

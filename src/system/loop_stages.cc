@@ -11,7 +11,8 @@ void StartNextStage(const MapMessage& message, bool is_applied, const SystemOpti
                     LoopStages& stages) {
   const auto* const correction = std::get_if<MapCorrection>(&message);
   const bool is_adjustment = correction != nullptr && !correction->loop;
-  if (!options.loop.enabled || options.vocabulary == nullptr || is_adjustment) {
+  const bool has_no_loop = is_adjustment || std::holds_alternative<LateDetections>(message);
+  if (!options.loop.enabled || options.vocabulary == nullptr || has_no_loop) {
     return;
   }
   if (correction != nullptr && is_applied) {

@@ -54,7 +54,7 @@ void SystemOptions::Validate() const {
   }
   if (sensor == SensorKind::kStereo && camera.IsDistorted()) {
     throw InputError(
-        "settings: Camera.k1 to Camera.k3 are not 0, expected no distortion: the images of a "
+        "settings: Camera.k1 to Camera.k6 are not 0, expected no distortion: the images of a "
         "stereo camera are rectified");
   }
   if (sensor == SensorKind::kStereo && camera.bf <= 0.0) {

@@ -25,6 +25,9 @@ class Pipeline {
   virtual void Begin(PipelineStart start) = 0;
   // See System::SetLocalizationOnly. To be called by the thread of Track.
   virtual void SetLocalizationOnly(bool is_on) = 0;
+  // See System::AwaitMasks and System::AddMasks. To be called by the thread of Track.
+  virtual void AwaitMasks(bool is_on) = 0;
+  virtual void AddDetections(LateDetections late) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
   // mapping has thrown an exception, its live map may be half edited. So mapping stops, all later
   // calls of Track and Finish throw the same exception, and map() stays the last published map.

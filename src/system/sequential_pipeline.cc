@@ -33,6 +33,14 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
 
   void SetLocalizationOnly(bool is_on) override { tracker_.LocaliseOnly(is_on); }
 
+  void AwaitMasks(bool is_on) override { mapper_.AwaitMasks(is_on); }
+
+  void AddDetections(LateDetections late) override {
+    Check(!is_finished_, "AddMasks after Finish");
+    RethrowFailure();
+    EditMap([&] { Process(std::move(late)); });
+  }
+
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();

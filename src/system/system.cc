@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -144,7 +145,7 @@ TrackedFrame System::Track(const ImageInput& image) {
 
 BuiltFrame System::Build(const ImageInput& image) {
   ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
-  return frame_builder_->Build(image, *runner_);
+  return frame_builder_->Build(image, *runner_, awaits_masks_);
 }
 
 TrackedFrame System::Track(BuiltFrame built) {
@@ -163,6 +164,7 @@ TrackedFrame System::Track(BuiltFrame built) {
                             .count());
   }
   frames_.push_back(report.tracked);
+  KeepAwaiting(report.tracked.frame, report.tracked.timestamp, std::move(built.awaiting));
   if (!is_localization_only_ && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
     FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_.all());
@@ -171,6 +173,39 @@ TrackedFrame System::Track(BuiltFrame built) {
     frame_callback_(report);
   }
   return frames_.back();
+}
+
+void System::AwaitMasks(bool is_on) {
+  awaits_masks_ = is_on;
+  pipeline_->AwaitMasks(is_on);
+}
+
+void System::KeepAwaiting(FrameId frame, double timestamp,
+                          std::shared_ptr<const DetectionInput> input) {
+  if (input != nullptr) {
+    awaiting_.push_back({frame, timestamp, std::move(input)});
+  }
+  std::erase_if(awaiting_, [&](const AwaitingFrame& former) {
+    return timestamp - former.timestamp > kMaskPatience;
+  });
+}
+
+bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
+  ValidateMasks(masks, options_.camera.width, options_.camera.height);
+  const auto found = std::ranges::find(awaiting_, frame, &AwaitingFrame::frame);
+  if (found == awaiting_.end()) {
+    return false;
+  }
+  SerialRunner runner;  // the other one may be building a frame
+  BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = {}};
+  frame_builder_->AddDetections(masks, *found->input, runner, built);
+  CheckVectors(*built.frame);
+  mask_counts_.Add(built.masks);
+  pipeline_->AddDetections({.frame = frame,
+                            .detections = std::move(built.frame->detections),
+                            .keypoints = found->input->keypoints.size()});
+  awaiting_.erase(found);
+  return true;
 }
 
 void System::SetLocalizationOnly(bool is_on) {
@@ -233,6 +268,8 @@ void System::Reset() {
   auto frame_builder = MakeFrameBuilder(sensor_, options_);
   pipeline_ = BeginPipeline();  // the old one ends its threads
   frame_builder_ = std::move(frame_builder);
+  awaits_masks_ = false;
+  awaiting_.clear();
   mask_counts_ = {};
   frames_.clear();
   remembered_.clear();

@@ -54,6 +54,15 @@ class ThreadedPipeline final : public Pipeline {
 
   void SetLocalizationOnly(bool is_on) override { tracker_.LocaliseOnly(is_on); }
 
+  void AwaitMasks(bool is_on) override { mapper_.AwaitMasks(is_on); }
+
+  // The mailbox keeps the order, so the frame is a keyframe by then if it becomes one.
+  void AddDetections(LateDetections late) override {
+    Check(mapping_thread_.joinable(), "AddMasks after Finish");
+    RethrowFailure();
+    Post(std::move(late));
+  }
+
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(mapping_thread_.joinable(), "Track after Finish");
     RethrowFailure();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/orb_slam2_keyframe_rule.h"
+#include "tracking/comparison/orb_slam2_keyframe_rule.h"
 
 namespace hullslam {
 

@@ -33,7 +33,7 @@ std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam
   }
   const double radius = kLocalSearchRadius * (view->cos_view > kCosFrontal ? kFrontalShare : 1.0);
   Projection projection;
-  projection.pixel = view->pixel.cast<float>();
+  projection.pixel = view->grid_pixel.cast<float>();
   projection.right_u = static_cast<float>(view->right_u);
   projection.radius =
       static_cast<float>(radius) * sensor.levels.scale[static_cast<size_t>(view->level)];

@@ -40,11 +40,13 @@ std::vector<Match> MatchFrames(const Frame& from, const Frame& to) {
 }
 
 double MedianShift(const Frame& from, const Frame& to, const std::vector<Match>& matches) {
+  const auto position = [](const FrameFeatures& features, uint32_t keypoint) {
+    return features.grid.PositionOf(features.keypoints, keypoint);
+  };
   std::vector<float> shifts;
   for (const Match& match : matches) {
-    shifts.push_back((from.features.keypoints[match.query].undistorted -
-                      to.features.keypoints[match.keypoint].undistorted)
-                         .norm());
+    shifts.push_back(
+        (position(from.features, match.query) - position(to.features, match.keypoint)).norm());
   }
   return static_cast<double>(Median(std::move(shifts)));
 }

@@ -58,21 +58,25 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
       continue;
     }
     const Eigen::Vector2d pixel = sensor.camera.Project(point);
-    if (!sensor.bounds.Contains(pixel)) {
+    if (!sensor.Sees(pixel)) {
       continue;
     }
-    const Keypoint& seen = last.frame->features.keypoints[i];
+    const FrameFeatures& features = last.frame->features;
+    const Keypoint& seen = features.keypoints[i];
     const LevelRange levels = LevelsAfterMotion(seen.level, forward, sensor);
     Projection& projection = expected.projections.emplace_back();
-    projection.pixel = pixel.cast<float>();
-    projection.right_u = static_cast<float>(pixel.x() - sensor.camera.bf / point.z());
+    projection.pixel = sensor.ToGrid(pixel).cast<float>();
+    projection.right_u =
+        static_cast<float>(sensor.camera.FarRight(pixel.x()) - sensor.camera.bf / point.z());
     projection.radius = radius * sensor.levels.scale[static_cast<size_t>(seen.level)];
     projection.min_level = levels.min;
     projection.max_level = levels.max;
     projection.descriptor = landmark->descriptor;
     projection.angle = seen.angle;
     expected.landmarks.push_back(last.landmarks[i]);
-    expected.distances.push_back((projection.pixel - seen.undistorted).norm());
+    expected.distances.push_back(
+        (projection.pixel - features.grid.PositionOf(features.keypoints, static_cast<uint32_t>(i)))
+            .norm());
   }
   return expected;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
 #include "matching/by_descriptor.h"
 #include "places/landmark_search.h"
+#include "tracking/pose_of_matches.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/pose_source.h"
 
@@ -46,6 +49,15 @@ std::optional<PoseEstimate> PoseByReferenceKeyframe(const Frame& frame, const Ma
     estimate.landmarks[keypoint] = landmark;
   }
   estimate = RefinePose(frame, map, context, {}, std::move(estimate));
+  // From a last pose that is far off, the refinement can end where only a few matches agree by
+  // chance. A pose with most of the matches cannot be beaten by another one.
+  if (2 * static_cast<size_t>(estimate.inliers) < found.size()) {
+    std::optional<PoseEstimate> agreed = PoseOfMatches(
+        frame, map, context, found, context.min_reference_matches(), "reference keyframe");
+    if (agreed && agreed->inliers > estimate.inliers) {
+      estimate = std::move(*agreed);
+    }
+  }
   return estimate.inliers >= context.min_start_inliers() ? std::optional(std::move(estimate))
                                                          : std::nullopt;
 }

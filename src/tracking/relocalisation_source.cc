@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "estimators/absolute_pose.h"
-#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
-#include "tracking/pose_refinement.h"
+#include "tracking/pose_of_matches.h"
 #include "tracking/pose_source.h"
 #include "util/id_set.h"
-#include "util/random_seed.h"
 
 namespace hullslam {
 namespace {
@@ -31,27 +27,8 @@ std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {
 // The pose from matches by words with the landmarks of one keyframe. Null if too few agree.
 std::optional<PoseEstimate> PoseByWords(const Frame& frame, const Map& map,
                                         const TrackingContext& context, KeyframeId keyframe) {
-  const std::vector<FoundLandmark> matches = MatchLandmarksByWords(map, frame, keyframe, {});
-  std::vector<PoseObservation> observations;
-  for (const auto& [keypoint, landmark] : matches) {
-    observations.push_back({.point = map.landmarks().At(landmark).position,
-                            .measurement = MeasurePoint(context.sensor, frame.features, keypoint,
-                                                        context.sensor.depth_error)});
-  }
-  RansacOptions ransac;
-  ransac.seed = HashSeed(context.seed, frame.id.value, "relocalisation");
-  ransac.min_inliers = context.min_reference_matches();
-  const AbsolutePose pose = EstimateAbsolutePose(context.sensor.camera, observations, ransac);
-  if (!pose.ok()) {
-    return std::nullopt;
-  }
-  PoseEstimate estimate;
-  estimate.cam_from_world = pose.cam_from_world;
-  estimate.landmarks.resize(frame.features.size());
-  for (const size_t inlier : pose.inliers) {
-    estimate.landmarks[matches[inlier].keypoint] = matches[inlier].landmark;
-  }
-  return RefinePose(frame, map, context, {}, std::move(estimate));
+  return PoseOfMatches(frame, map, context, MatchLandmarksByWords(map, frame, keyframe, {}),
+                       context.min_reference_matches(), "relocalisation");
 }
 
 // Adds landmarks of the place that are seen from the estimated pose, and refines the pose.

@@ -17,7 +17,7 @@ double ShareInImage(const Map& map, const Sensor& sensor, const Rigid3& cam_from
     }
     ++count;
     const Eigen::Vector3d point = cam_from_world * landmark->position;
-    const bool is_inside = point.z() > 0.0 && sensor.bounds.Contains(sensor.camera.Project(point));
+    const bool is_inside = point.z() > 0.0 && sensor.Sees(sensor.camera.Project(point));
     inside += is_inside ? 1 : 0;
   }
   return count > 0 ? static_cast<double>(inside) / static_cast<double>(count) : 1.0;

@@ -14,7 +14,7 @@
 
 namespace hullslam {
 
-// What is done with the image of a moment. The image is in colour with blue first, CV_8UC3, in raw
+// A visitor of the image of a moment. The image is in colour with blue first, CV_8UC3, in raw
 // pixels, and has the size of the camera.
 struct ImageTask {
   double timestamp = 0.0;  // s

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What a program still knows at the end of a run, beside the files in its folder. All may be null.
+// The data that a program still has after a run, beside the files in its folder. All may be null.
 struct RunMemory {
   const Map* map = nullptr;
   const Sensor* sensor = nullptr;          // needed with `map`

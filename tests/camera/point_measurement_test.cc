@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
+#include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
 #include "util/chi_square.h"
 
@@ -194,6 +196,64 @@ TEST(PointMeasurement, IsValidWithFiniteNumbersAndAWeight) {
   PointMeasurement weightless = valid;
   weightless.inverse_sigma.x() = 0.0;
   EXPECT_FALSE(weightless.IsValid());
+}
+
+// Measurements of a fisheye lens, whose errors are those of the raw pixel.
+PointMeasurement MeasureFisheye(const Eigen::Vector2d& pixel, std::optional<double> disparity) {
+  PointMeasurement measurement = Measure(pixel, disparity);
+  measurement.TakeLens(FisheyeCamera().DistortionJacobian(pixel));
+  return measurement;
+}
+
+TEST(PointMeasurement, TheErrorOfAFisheyeIsThatOfItsRawPixel) {
+  const PinholeCamera camera = FisheyeCamera();
+  for (const Eigen::Vector3d& ray :
+       {Eigen::Vector3d(0.1, 0.2, 1.0), {2.0, 1.0, 1.0}, {-3.0, 2.0, 1.0}, {1.0, -4.0, 1.0}}) {
+    const Eigen::Vector2d raw = camera.Distort(camera.Project(ray));
+    const PointMeasurement measurement = MeasureFisheye(camera.Project(ray), std::nullopt);
+    for (const Eigen::Vector2d& error : {Eigen::Vector2d(0.2, 0.0), {0.0, 0.2}, {-0.15, 0.1}}) {
+      const Eigen::Vector3d seen = camera.Unproject(camera.Undistort(raw + error), 2.0);
+      // Sigma is 2 px.
+      EXPECT_NEAR(std::sqrt(PointChi2(camera, measurement, seen)), error.norm() / 2.0,
+                  0.005 * error.norm());
+    }
+  }
+}
+
+TEST(PointMeasurement, TheLensDoesNotChangeTheErrorOfTheDisparity) {
+  const PinholeCamera camera = FisheyeCamera();
+  const PointMeasurement measurement = MeasureFisheye({900.0, 500.0}, 12.0);
+  const Eigen::Vector3d point = camera.Unproject({900.0, 500.0}, camera.bf / 13.0);
+  EXPECT_LT((PointResidual(camera, measurement, point) - Eigen::Vector3d(0.0, 0.0, 2.0)).norm(),
+            1e-9);
+}
+
+TEST(PointMeasurement, DerivativesWithALensAreTrue) {
+  const PinholeCamera camera = FisheyeCamera();
+  RandomGeometry random(5);
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d point = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 1.5);
+    const PointMeasurement measurement =
+        MeasureFisheye({random.Number(-900, 1500), random.Number(-700, 1200)},
+                       i % 2 == 0 ? std::optional(random.Number(5, 40)) : std::nullopt);
+    const Eigen::Matrix3d jacobian = PointResidualJacobian(camera, measurement, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d slope = (PointResidual(camera, measurement, point + step) -
+                                     PointResidual(camera, measurement, point - step)) /
+                                    (2.0 * kStep);
+      EXPECT_LT((slope - jacobian.col(axis)).norm(), 1e-4);
+    }
+    const PointLinearization linear(camera, measurement, point);
+    const Eigen::Vector3d residual = PointResidual(camera, measurement, point);
+    EXPECT_LT((linear.residual - residual).norm(), 1e-9 * (1.0 + residual.norm()));
+    EXPECT_LT((linear.Times(Eigen::Matrix3d::Identity()) - jacobian).norm(), 1e-9);
+    EXPECT_LT((linear.Gradient() - jacobian.transpose() * residual).norm(),
+              1e-9 * (1.0 + residual.norm()) * jacobian.norm());
+    EXPECT_LT((linear.Hessian() - jacobian.transpose() * jacobian).norm(),
+              1e-9 * jacobian.squaredNorm());
+  }
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "support/fisheye_camera.h"
+
 namespace hullslam {
 namespace {
 
@@ -150,6 +152,55 @@ TEST(RefineMotion, EndsAtAMinimum) {
                           (found.translation + 1e-2 * draw()).normalized()};
     EXPECT_GT(SumOfCosts(pairs, other, 0.4), least - 1e-3 * least) << i;
   }
+}
+
+// Raw pixels with an error of half a sigma, seen through a fisheye lens.
+std::vector<PixelPair> SeeThroughFisheye(uint64_t seed) {
+  const PinholeCamera camera = FisheyeCamera();
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, 0.5);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::vector<PixelPair> pairs;
+  while (pairs.size() < 400) {
+    const Eigen::Vector2d raw(640.0 * share(random), 480.0 * share(random));
+    const Eigen::Vector3d ray = camera.Unproject(camera.Undistort(raw), 1.0).normalized();
+    const Eigen::Vector3d in_b = TrueMotion() * Eigen::Vector3d((3.0 + 5.0 * share(random)) * ray);
+    const Eigen::Vector2d raw_b = camera.Distort(camera.Project(in_b));
+    if (camera.SeesRaw(raw) && in_b.z() > 0.2 * in_b.norm() && camera.SeesRaw(raw_b)) {
+      pairs.push_back(
+          {.a = camera.Undistort(raw + Eigen::Vector2d(normal(random), normal(random))),
+           .b = camera.Undistort(raw_b + Eigen::Vector2d(normal(random), normal(random)))});
+    }
+  }
+  return pairs;
+}
+
+// With the errors of the raw pixels, Sampson's error has one degree of freedom at every angle.
+TEST(SampsonError, OfAFisheyeIsChiSquareAtAllAngles) {
+  const PinholeCamera camera = FisheyeCamera();
+  double inner = 0.0;
+  double outer = 0.0;
+  int inner_count = 0;
+  int outer_count = 0;
+  for (uint64_t seed = 0; seed < 4; ++seed) {
+    for (const PixelPair& pair : SeeThroughFisheye(seed)) {
+      const double error = SampsonError(camera, TrueMotion(), pair) / 0.25;
+      const bool is_inner = camera.Unproject(pair.a, 1.0).norm() < 1.7;
+      (is_inner ? inner : outer) += error;
+      ++(is_inner ? inner_count : outer_count);
+    }
+  }
+  ASSERT_GT(outer_count, 200);
+  EXPECT_NEAR(inner / inner_count, 1.0, 0.15);
+  EXPECT_NEAR(outer / outer_count, 1.0, 0.15);
+}
+
+TEST(RefineMotion, FindsTheMotionThroughAFisheye) {
+  const Rigid3 start{TrueMotion().rotation * ExpSo3({0.01, -0.01, 0.01}),
+                     (TrueMotion().translation + Eigen::Vector3d(0.05, -0.1, 0.1)).normalized()};
+  const Rigid3 found = RefineMotion(FisheyeCamera(), SeeThroughFisheye(7), start, 0.5);
+  EXPECT_LT(found.rotation.angularDistance(TrueMotion().rotation), 0.002);
+  EXPECT_LT((found.translation - TrueMotion().translation).norm(), 0.01);
 }
 
 }  // namespace

@@ -36,6 +36,24 @@ TEST(Rpe, MeasuresDriftInRotationInDegrees) {
   EXPECT_NEAR(report.translation.rmse, 0.0, 1e-12);
 }
 
+// Files of EuRoC, COLMAP and others have qw first. Without a header nothing else tells them apart
+// from files of TUM.
+TEST(Rpe, RotationsWithTheirRealPartFirstAreNoticed) {
+  const Trajectory estimate = Drive(31, 1.0, 0.5);
+  const Trajectory turned_otherwise = Drive(31, 1.0, -0.5);
+  Trajectory swapped = estimate;
+  for (StampedPose& pose : swapped) {
+    const Eigen::Quaterniond q = pose.world_from_cam.rotation;
+    pose.world_from_cam.rotation = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y());
+  }
+  const auto described = [&](const Trajectory& reference) {
+    return DescribeSwappedRotations(reference, estimate, EvaluateRpe(reference, estimate));
+  };
+  EXPECT_NE(described(swapped).find("qw first"), std::string::npos);
+  EXPECT_EQ(described(estimate), "");
+  EXPECT_EQ(described(turned_otherwise), "");
+}
+
 TEST(Rpe, IsInvariantUnderTheChoiceOfWorldFrames) {
   const Trajectory reference = Drive(31, 1.0, 0.5);
   Trajectory estimate = Drive(31, 1.2, 0.4);

@@ -70,6 +70,19 @@ TEST(McapMessagesTest, OurReaderReadsImagesAndCameras) {
   EXPECT_EQ(info.width, 640u);
   EXPECT_EQ(info.k, (std::array<double, 9>{500, 0, 320, 0, 510, 240, 0, 0, 1}));
   EXPECT_EQ(info.distortion, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5}));
+  PinholeCamera rational = camera;
+  rational.k6 = 0.8;
+  const CameraInfoMessage of_rational =
+      ReadCameraInfo(kCdr, CameraInfoMessageOf({1, 2}, rational), "m");
+  EXPECT_EQ(of_rational.distortion_model, "rational_polynomial");
+  EXPECT_EQ(of_rational.distortion, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5, 0.0, 0.0, 0.8}));
+  PinholeCamera fisheye = camera;
+  fisheye.lens = LensModel::kKannalaBrandt;
+  fisheye.k4 = 0.6;
+  const CameraInfoMessage of_fisheye =
+      ReadCameraInfo(kCdr, CameraInfoMessageOf({1, 2}, fisheye), "m");
+  EXPECT_EQ(of_fisheye.distortion_model, "equidistant");
+  EXPECT_EQ(of_fisheye.distortion, (std::vector<double>{0.1, 0.2, 0.5, 0.6}));
   const std::string message = JpegMessage({1, 2}, "jpeg bytes");
   const CompressedImageMessage image = ReadCompressedImage(kCdr, message, "m");
   EXPECT_EQ(image.stamp, (BagTime{1, 2}));

@@ -86,6 +86,26 @@ TEST(FeatureGrid, AppendsInOrderOfIndexWithinACell) {
   EXPECT_EQ(found, (std::vector<uint32_t>{77, 0, 2, 3}));
 }
 
+TEST(FeatureGrid, SearchesInTheGivenPositions) {
+  std::vector<Keypoint> keypoints(3);
+  for (Keypoint& keypoint : keypoints) {
+    keypoint.undistorted = {5000.0f, -3000.0f};
+  }
+  const std::vector<Eigen::Vector2f> positions = {{10.0f, 20.0f}, {300.0f, 200.0f}, {12.0f, 21.0f}};
+  const Eigen::Vector2f box(640.0f, 480.0f);
+  const FeatureGrid grid(keypoints, positions, box);
+  std::vector<uint32_t> found;
+  grid.FindNear(keypoints, {11.0f, 20.0f}, 5.0f, 0, 7, found);
+  EXPECT_EQ(found, (std::vector<uint32_t>{0, 2}));
+  const std::vector<uint32_t> kept = {1, 2};
+  const std::vector<Keypoint> rest(keypoints.begin() + 1, keypoints.end());
+  found.clear();
+  grid.Select(kept).FindNear(rest, {300.0f, 200.0f}, 5.0f, 0, 7, found);
+  EXPECT_EQ(found, (std::vector<uint32_t>{0}));
+  EXPECT_EQ(grid.PositionOf(keypoints, 1), positions[1]);
+  EXPECT_THROW(FeatureGrid(rest, positions, box), CheckError);
+}
+
 TEST(FeatureGrid, RadiusIsExclusive) {
   std::vector<Keypoint> keypoints(1);
   keypoints[0].undistorted = {100.0f, 100.0f};

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -66,6 +67,14 @@ TEST(ReadText, EightBitEncodingsAreNamed) {
   CheckUtf8("a.txt", kText);
   ExpectInputError([] { CheckUtf8("a.txt", "cup\nB\xfcro\n"); },
                    {"a.txt:2: 'B?ro' is not UTF-8", "saved as UTF-8"});
+}
+
+TEST(LinesOf, EachEndsAtItsNewline) {
+  using Lines = std::vector<std::string_view>;
+  EXPECT_EQ(LinesOf(""), Lines());
+  EXPECT_EQ(LinesOf("a"), Lines({"a"}));
+  EXPECT_EQ(LinesOf("a\n"), Lines({"a"}));
+  EXPECT_EQ(LinesOf("\na\r\n\nb"), Lines({"", "a\r", "", "b"}));
 }
 
 }  // namespace

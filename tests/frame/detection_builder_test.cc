@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -14,6 +15,7 @@
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
 #include "made_masks.h"
+#include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
@@ -649,6 +651,47 @@ TEST(DetectionRejection, HasANameForEach) {
   }
   EXPECT_EQ(names.size(), static_cast<size_t>(kDetectionRejectionCount));
   EXPECT_EQ(ToString(DetectionRejection::kNoSilhouette), "no_silhouette");
+}
+
+// A line is a plane through the centre, so it touches the ellipsoid at all angles; in the raw image
+// its error is some tenths of a pixel.
+TEST(DetectionBuilder, LinesAtTheRimOfAFisheyeTouchTheObject) {
+  const PinholeCamera camera = FisheyeCamera();
+  for (const double degrees : {0.0, 40.0, 60.0, 70.0}) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    Ellipsoid ellipsoid;
+    ellipsoid.world_from_object.translation = {2.0 * std::sin(angle), 0.1, 2.0 * std::cos(angle)};
+    ellipsoid.half_axes = {0.15, 0.2, 0.12};
+    const auto projected = ProjectEllipsoid(camera.Matrix(), Rigid3(), ellipsoid);
+    ASSERT_TRUE(projected);
+    const Detection detection = BuildOne(MaskOf(*projected, camera), camera);
+    ASSERT_GE(detection.lines.size(), 8u) << degrees;
+    EXPECT_FALSE(detection.is_cut);
+    for (const SilhouetteLine& line : detection.lines) {
+      EXPECT_FALSE(line.is_one_sided);
+      const Eigen::Vector2d touching =
+          projected->center +
+          projected->shape * line.line.normal / projected->HalfExtent(line.line.normal);
+      const double raw_per_pixel =
+          1.0 / (camera.DistortionJacobian(touching).inverse().transpose() *
+                 Eigen::Vector2d(line.line.normal))
+                    .norm();
+      EXPECT_LT(std::abs(Excess(line.line, *projected)) * raw_per_pixel, 0.3) << degrees;
+    }
+  }
+}
+
+TEST(DetectionBuilder, TheLargestAngleOfAFisheyeCutsAMask) {
+  PinholeCamera camera = FisheyeCamera();
+  camera.width = 900;
+  camera.cx = 450.0;
+  const InstanceMask mask = RectangleMask(750.0, 210.0, 60.0, 60.0);
+  const Detection detection = BuildOne(mask, camera);
+  EXPECT_TRUE(detection.is_cut);
+  const auto one_sided = std::count_if(detection.lines.begin(), detection.lines.end(),
+                                       [](const auto& line) { return line.is_one_sided; });
+  EXPECT_GT(one_sided, 0);
+  EXPECT_LT(one_sided, static_cast<int>(detection.lines.size()));
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -34,6 +37,28 @@ TEST(MeasurePoint, BundleAdjustmentHasAPixelErrorOfItsOwn) {
       .pixel_sigma = 0.5, .adjustment_pixel_sigma = 2.0, .disparity_sigma = 0.25};
   EXPECT_EQ(options.ForAdjustment().pixel_sigma, 2.0);
   EXPECT_EQ(options.ForAdjustment().disparity_sigma, 0.25);
+}
+
+TEST(MeasurePoint, OfAFisheyeHasTheErrorOfTheRawPixelAndItsDisparity) {
+  Sensor sensor = SyntheticSensor();
+  sensor.camera = FisheyeCamera();
+  FrameFeatures features;
+  features.keypoints.resize(1);
+  features.keypoints[0].undistorted = sensor.camera.Project({-2.5, 0.5, 1.0}).cast<float>();
+  const float depth = 0.8f;
+  features.right_u = {VirtualRight(
+      static_cast<float>(sensor.camera.FarRight(features.keypoints[0].undistorted.x())), depth,
+      sensor.camera.bf)};
+  EXPECT_GT(features.right_u[0], 0.0f) << "negative columns are those without depth";
+  const PointMeasurement measurement = MeasurePoint(sensor, features, 0, sensor.depth_error);
+  EXPECT_NEAR(measurement.measured.z(), sensor.camera.bf / 0.8, 1e-3);
+  const Eigen::Vector2d raw =
+      sensor.camera.Distort(features.keypoints[0].undistorted.cast<double>());
+  const Eigen::Vector3d moved = sensor.camera.Unproject(
+      sensor.camera.Undistort(raw + Eigen::Vector2d(0.2, 0.1)), sensor.camera.bf / 23.75);
+  const double sigma = sensor.depth_error.pixel_sigma;
+  EXPECT_NEAR(PointResidual(sensor.camera, measurement, moved).head<2>().norm(),
+              std::hypot(0.2, 0.1) / sigma, 0.01);
 }
 
 }  // namespace

@@ -243,6 +243,24 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   EXPECT_EQ(MapSettingsOf(options), settings) << "frames with and without it fit together";
 }
 
+TEST_F(MapFileTest, KeepsTheLens) {
+  MapSettings rational = MadeSettings();
+  rational.camera.k4 = 0.1;
+  rational.camera.k6 = -0.02;
+  MapSettings fisheye = MadeSettings();
+  fisheye.camera.lens = LensModel::kKannalaBrandt;
+  fisheye.camera.k4 = 0.001;
+  for (const MapSettings& settings : {rational, fisheye}) {
+    WriteMap(path_, SmallMap(), settings);
+    EXPECT_EQ(ReadMap(path_).settings, settings);
+    EXPECT_EQ(Dump(ReadMap(path_).map), Dump(SmallMap()));
+    SystemOptions other = OptionsOf(settings);
+    other.camera.lens = LensModel::kBrown;
+    other.camera.k4 = 0.0;
+    EXPECT_THROW(ReadMap(path_, other), InputError);
+  }
+}
+
 // A map file may come from a stranger, or from a program that did not check its labels.
 TEST_F(MapFileTest, LabelsAreMadePrintable) {
   Map map;

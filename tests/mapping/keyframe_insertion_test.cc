@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
@@ -194,14 +195,21 @@ TEST(KeyframeInsertion, EachPartOfTheImageGetsItsShareOfLandmarks) {
   EXPECT_GE(created.size(), 100u);
   EXPECT_LT(created.size(), view.points.size() / 2);
   const Keyframe& keyframe = made.map.keyframes().At(id);
-  const auto middle = static_cast<float>(0.5 * (sensor.bounds.min_x + sensor.bounds.max_x));
-  size_t on_the_left = 0;
+  std::array<size_t, 12> keypoints{};  // with depth, in each of 4 x 3 parts
+  std::array<size_t, 12> landmarks{};
   for (size_t i = 0; i < view.points.size(); ++i) {
-    const bool is_left = view.frame->features.keypoints[i].undistorted.x() < middle;
-    on_the_left += keyframe.landmarks[i].IsValid() && is_left ? 1 : 0;
+    const PinholeCamera::Bounds& area = sensor.bounds;
+    const Eigen::Vector2f& pixel = view.frame->features.keypoints[i].undistorted;
+    const auto column =
+        static_cast<size_t>(4.0 * (pixel.x() - area.min_x) / (area.max_x - area.min_x));
+    const auto row =
+        static_cast<size_t>(3.0 * (pixel.y() - area.min_y) / (area.max_y - area.min_y));
+    keypoints.at(4 * row + column) += view.frame->features.depth[i] > 0.0f ? 1 : 0;
+    landmarks.at(4 * row + column) += keyframe.landmarks[i].IsValid() ? 1 : 0;
   }
-  EXPECT_GE(on_the_left, 40u);
-  EXPECT_GE(created.size() - on_the_left, 40u);
+  for (size_t part = 0; part < keypoints.size(); ++part) {
+    EXPECT_GE(landmarks[part], std::min<size_t>(keypoints[part], 9)) << part;
+  }
 }
 
 TEST(KeyframeInsertion, KnownLandmarksAreObservedAndNotMadeAgain) {

@@ -403,6 +403,101 @@ TEST_F(MapperTest, FinishDoesNothingWithFewerThanTwoKeyframesOrCancelled) {
   EXPECT_FALSE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
 
+// A cup in front of the camera; its detections come with the frames or after them.
+class MapperLateMasksTest : public MapperTest {
+ protected:
+  Detection DetectCup(uint32_t index) const {
+    return Detect(cup_, world_.sensor(), SyntheticWorld::CamFromWorld(index));
+  }
+
+  bool AddLate(uint32_t index) {
+    return mapper_->Process(
+        LateDetections{.frame = FrameId(index),
+                       .detections = {DetectCup(index)},
+                       .keypoints = world_.Observe(index).frame->features.size()},
+        nullptr);
+  }
+
+  void ProcessWithCup(uint32_t index) {
+    KeyframeId newest;
+    map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
+    KeyframeRequest request = Request(index, newest);
+    auto frame = std::make_shared<Frame>(*request.frame);
+    frame->detections = {DetectCup(index)};
+    request.frame = std::move(frame);
+    Process(request);
+  }
+
+  const ObjectLandmark& OnlyObject() const {
+    const ObjectLandmark* only = nullptr;
+    map().objects().ForEach([&](ObjectId, const ObjectLandmark& object) { only = &object; });
+    EXPECT_EQ(map().objects().size(), 1u);
+    return *only;
+  }
+
+  // Nearer than the points of the world, so that none of them hides it.
+  const MadeObject cup_ = MakeObject("cup", {0.2, 0.0, 1.2}, {0.06, 0.10, 0.08});
+};
+
+TEST_F(MapperLateMasksTest, LateDetectionsMapTheObjectThatThoseInTimeMap) {
+  const MappingOptions options = {.cull_keyframes = false};
+  Restart(options);
+  ProcessFrame(0);
+  for (uint32_t index = 5; index <= 60; index += 5) {
+    ProcessWithCup(index);
+  }
+  const ObjectLandmark in_time = OnlyObject();
+  ASSERT_EQ(in_time.state, ObjectState::kMapped);
+  Restart(options);
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  for (uint32_t index = 5; index <= 60; index += 5) {
+    ProcessFrame(index);
+    ASSERT_TRUE(AddLate(index));
+  }
+  const ObjectLandmark& late = OnlyObject();
+  EXPECT_EQ(late.state, ObjectState::kMapped);
+  EXPECT_EQ(late.observations.size(), in_time.observations.size());
+  EXPECT_EQ(late.visible, late.found);
+  EXPECT_LT((late.ellipsoid.world_from_object.translation -
+             in_time.ellipsoid.world_from_object.translation)
+                .norm(),
+            0.01);
+}
+
+TEST_F(MapperLateMasksTest, AKeyframeThatAwaitsMasksDoesNotMissTheObject) {
+  ProcessFrame(0);
+  for (uint32_t index = 5; index <= 40; index += 5) {
+    ProcessWithCup(index);
+  }
+  const int visible = OnlyObject().visible;
+  mapper_->AwaitMasks(true);
+  ProcessFrame(45);
+  EXPECT_EQ(OnlyObject().visible, visible);
+  // Masks that show nothing say that it is not seen.
+  EXPECT_TRUE(
+      mapper_->Process(LateDetections{.frame = FrameId(45),
+                                      .detections = {},
+                                      .keypoints = world_.Observe(45).frame->features.size()},
+                       nullptr));
+  EXPECT_EQ(OnlyObject().visible, visible + 1);
+  mapper_->AwaitMasks(false);
+  ProcessFrame(50);
+  EXPECT_EQ(OnlyObject().visible, visible + 2);
+}
+
+TEST_F(MapperLateMasksTest, OnlyAKeyframeWithoutDetectionsTakesThem) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  ProcessFrame(10);
+  EXPECT_FALSE(AddLate(5)) << "no keyframe";
+  EXPECT_TRUE(AddLate(10));
+  EXPECT_FALSE(AddLate(10)) << "for the second time";
+  LateDetections of_more_keypoints{.frame = FrameId(0), .detections = {DetectCup(0)}};
+  EXPECT_FALSE(mapper_->Process(of_more_keypoints, nullptr)) << "the keyframe is compacted";
+  EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
+}
+
 TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {
   MappingOptions options;
   options.final_bundle_adjustment = true;

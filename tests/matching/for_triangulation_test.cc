@@ -8,6 +8,7 @@
 
 #include "geometry/epipolar.h"
 #include "matching/made_features.h"
+#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -129,6 +130,36 @@ TEST(MatchForTriangulation, FindsAllAndOnlyTrueMatchesInTwoViews) {
 
 TEST(MatchForTriangulation, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchAll(MakeFeatures({}), MakeFeatures({}), SideBySide()).empty());
+}
+
+// 1.9 raw px from the line at the rim of a fisheye are many undistorted ones.
+TEST(MatchForTriangulation, DistancesAreThoseOfTheRawImageWithAFisheye) {
+  const PinholeCamera camera = FisheyeCamera();
+  const Eigen::Vector2d on_line = camera.Project({3.0, 0.5, 1.0});
+  const auto count = [&](double raw_offset) {
+    const Eigen::Vector2d raw = camera.Distort(on_line) + Eigen::Vector2d(0.0, raw_offset);
+    const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, static_cast<float>(on_line.y())}}});
+    const FrameFeatures b = MakeFeatures({{.pixel = camera.Undistort(raw).cast<float>()}});
+    return MatchAll(a, b, SideBySide(), kFarEpipole, {.lens = &camera}).size();
+  };
+  EXPECT_EQ(count(0.0), 1u);
+  // The line of this row is slanted in the raw image.
+  EXPECT_EQ(count(1.9), 1u);
+  EXPECT_EQ(count(-1.9), 1u);
+  EXPECT_EQ(count(3.5), 0u);
+  EXPECT_EQ(count(-3.5), 0u);
+}
+
+TEST(MatchForTriangulation, TheDistanceToTheEpipoleIsThatOfTheRawImageWithAFisheye) {
+  const PinholeCamera camera = FisheyeCamera();
+  const auto count = [&](double x) {
+    const Eigen::Vector2d pixel = camera.Project({x, 0.0, 1.0});
+    const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, static_cast<float>(pixel.y())}}});
+    const FrameFeatures b = MakeFeatures({{.pixel = pixel.cast<float>()}});
+    return MatchAll(a, b, SideBySide(), camera.Project({3.0, 0.0, 1.0}), {.lens = &camera}).size();
+  };
+  EXPECT_EQ(count(2.8), 0u) << "49 undistorted px, but 5 raw px";
+  EXPECT_EQ(count(1.5), 1u);
 }
 
 }  // namespace

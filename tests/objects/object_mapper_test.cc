@@ -69,6 +69,21 @@ TEST_F(Mapping, AnObjectIsACandidateUntilItIsSeenFromEnoughSides) {
   EXPECT_EQ(Mapped().size(), 3u);
 }
 
+// A camera that only turns has hardly any parallax, but its depth images show where things are.
+TEST_F(Mapping, DepthTellsWhereAnObjectIsThatIsSeenFromOneSide) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.01 * i);  // 2.3 degrees in all
+  }
+  const auto mapped = Mapped();
+  ASSERT_EQ(mapped.size(), table.size());
+  for (const MadeObject& made : table) {
+    EXPECT_TRUE(std::ranges::any_of(mapped, [&](const ObjectLandmark& object) {
+      return VolumeOverlap(object.ellipsoid, made.ellipsoid) > 0.5;
+    })) << made.label;
+  }
+}
+
 // Six views within 6 degrees, without depth.
 TEST_F(Mapping, LandmarksTellWhereAnObjectIsWithoutDepth) {
   const MadeObject cup = MakeObject("cup", {0.1, 0.05, 0.0}, {0.10, 0.12, 0.11});

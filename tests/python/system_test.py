@@ -218,6 +218,21 @@ def test_a_map_is_saved_loaded_and_localised_in(settings, slam, wall, tmp_path):
     assert wall.track(slam, 0, 1)[0].state == "tracked"
 
 
+def test_masks_may_come_after_their_frame(slam, wall):
+    square = hullslam.Masks.from_outlines([[(100, 80), (200, 80), (200, 160), (100, 160)]], ["cup"])
+    assert slam.add_masks(0, square) is False
+    slam.await_masks(True)
+    first = slam.track(wall.images[0], wall.depth, timestamp=0.0)
+    slam.track(wall.images[1], wall.depth, timestamp=0.1)
+    assert slam.add_masks(first.frame, square) is True
+    assert slam.add_masks(first.frame, square) is False
+    assert slam.add_masks(-1, square) is False
+    assert slam.object_counts["frames_with_masks"] == 1
+    wrong = hullslam.Masks(np.zeros((1, 10, 10), bool), ["cup"])
+    with pytest.raises(hullslam.InputError, match="10x10"):
+        slam.add_masks(first.frame, wrong)
+
+
 def test_the_threaded_pipelines_work(settings, wall):
     for pipeline in ("threaded", "realtime"):
         slam = hullslam.System(settings, pipeline=pipeline)

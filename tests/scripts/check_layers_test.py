@@ -4,21 +4,16 @@
 
 import pathlib
 import sys
-import tempfile
 import unittest
+
+from small_tree import faults_in
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import check_layers  # noqa: E402
 
 
 def faults_of(files):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for name, text in files.items():
-            path = root / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-        return check_layers.check_tree(root)
+    return faults_in(check_layers.check_tree, files)
 
 
 class CheckLayersTest(unittest.TestCase):
@@ -63,6 +58,7 @@ class CheckLayersTest(unittest.TestCase):
         for call in ("hullslam_module(map)", "hullslam_module(map LINKS util)",
                      "hullslam_module(map LINKS util PUBLIC geometry)",
                      "hullslam_module(map LINKS util PRIVATE geometry)",
+                     "hullslam_module(map LINKS util WITH_SCENE geometry)",
                      "hullslam_module(map LINKS util  # geometry\n)",
                      "# hullslam_module(map LINKS geometry)\nhullslam_module(map LINKS util)"):
             with self.subTest(call):

@@ -4,8 +4,9 @@
 
 import pathlib
 import sys
-import tempfile
 import unittest
+
+from small_tree import faults_in
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import check_public_headers  # noqa: E402
@@ -15,13 +16,7 @@ INCLUDE = '#include "hullslam/map/map.h"\n'
 
 
 def faults_of(files):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for name, text in files.items():
-            path = root / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-        return check_public_headers.check_tree(root)
+    return faults_in(check_public_headers.check_tree, files)
 
 
 class CheckPublicHeadersTest(unittest.TestCase):

@@ -4,8 +4,9 @@
 
 import pathlib
 import sys
-import tempfile
 import unittest
+
+from small_tree import faults_in
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import check_test_mirror  # noqa: E402
@@ -16,13 +17,7 @@ BODY = "TEST(IdTest, Orders) {}\n"
 
 
 def faults_of(files):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for name, text in files.items():
-            path = root / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-        return check_test_mirror.check_tree(root)
+    return faults_in(check_test_mirror.check_tree, files)
 
 
 class CheckTestMirrorTest(unittest.TestCase):

@@ -239,6 +239,15 @@ class MakeMasksTest(unittest.TestCase):
         self.assertEqual(len(list((photos / "masks").glob("1.*.txt"))), 6)
         self.assertIn("0 of them new", self.run_script(sequence=photos).stdout)
 
+    def test_the_left_images_of_a_stereo_camera(self):
+        for name in ("mav0/cam0/data", "mav0/cam1/data"):
+            shutil.copytree(self.sequence / "rgb", self.dir / "stereo" / name)
+        result = self.run_script(sequence=self.dir / "stereo")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(list((self.dir / "stereo" / "masks").glob("1.*.txt"))), 6)
+        (self.dir / "walk.bag").touch()
+        self.assert_refused(self.run_script(sequence=self.dir / "walk.bag"), "hullslam segment")
+
     def test_photos_that_are_turned_have_masks_of_their_stored_pixels(self):
         photos = self.dir / "photos"
         photos.mkdir()

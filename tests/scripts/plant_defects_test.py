@@ -67,6 +67,12 @@ class PlantDefectsTest(unittest.TestCase):
         self.assertEqual(self.source.read_text(), before)
         self.assertFalse((self.tree / "build").exists())
 
+    def test_the_test_program_is_that_of_the_module(self):
+        for file in ("src/objects/a.cc", "src/objects/comparison/a.cc",
+                     "include/hullslam/objects/a.h"):
+            self.assertEqual(plant_defects.command_of(entry("a", "x", "y", file)),
+                             ["objects_tests"])
+
     def test_all_caught(self):
         result = self.plant([CAUGHT])
         self.assertEqual(result.returncode, 0, result.stderr)

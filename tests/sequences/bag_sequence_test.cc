@@ -212,21 +212,26 @@ TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
                                     Image(0, 10)};
   };
   const BagSequenceOptions mono = {.use_depth = false};
-  ExpectRefusal(
-      with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {1, 2, 3, 4})),
-      {"/cam/camera_info", "'equidistant' with 4", "plumb_bob", "--settings"}, mono);
-  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
-                                           {0, 0, 0, 0, 0, 1, 0, 0})),
-                {"'rational_polynomial' with 8 coefficients, which HullSLAM cannot use yet"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "omni", {1, 2, 3, 4})),
+                {"/cam/camera_info", "'omni' with 4", "plumb_bob", "--settings"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {1, 2})),
+                {"'equidistant' with 2 coefficients, expected 4 coefficients"}, mono);
   ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {}, 0.0)),
                 {"not calibrated"}, mono);
   const BagSequence bag =
       Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
-                                      {0.1, 0.2, 0.3, 0.4, 0.5, 0, 0, 0})),
+                                      {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8})),
            mono);
+  EXPECT_EQ(bag.camera->camera.k4, 0.6);
+  EXPECT_EQ(bag.camera->camera.k6, 0.8);
   EXPECT_EQ(bag.camera->camera.k2, 0.2);
   EXPECT_EQ(bag.camera->camera.p1, 0.3);
   EXPECT_EQ(bag.camera->camera.k3, 0.5);
+  const BagSequence fisheye = Open(
+      with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {0.1, 0.2, 0.3, 0.4})),
+      mono);
+  EXPECT_TRUE(fisheye.camera->camera.IsFisheye());
+  EXPECT_EQ(fisheye.camera->camera.k4, 0.4);
   // Models that HullSLAM does not have are those of a pinhole if there is no distortion.
   const BagSequence pinhole =
       Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "Inverse Brown Conrady")), mono);

@@ -236,7 +236,7 @@ TEST_F(EurocSequenceTest, BrokenSensorFilesAreReported) {
   expect("rate_hz: 20", "rate_hz: often", {"sensor.yaml:14: rate_hz has a value"});
   expect("camera_model: pinhole", "camera_model: omni",
          {"sensor.yaml:16: camera_model is 'omni', expected 'pinhole'"});
-  expect("radial-tangential", "equidistant", {"sensor.yaml:18: distortion_model is 'equidistant'"});
+  expect("radial-tangential", "omni", {"sensor.yaml:18: distortion_model is 'omni'"});
   expect("0.0, -1.0, 0.0, 0.1", "0.0, 1.0, 0.0, 0.1", {"sensor.yaml:6: T_BS is not a rigid"});
   expect("0.0, 0.0, 0.0, 1.0]", "0.0, 0.0, 0.0, 2.0]", {"sensor.yaml:6: T_BS is not a rigid"});
   expect("0.0, 0.0, 0.0, 1.0]", "0.0]", {"sensor.yaml:9: T_BS.data has 13 value(s), expected 16"});

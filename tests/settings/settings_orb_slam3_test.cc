@@ -114,6 +114,21 @@ TEST_F(SettingsOrbSlam3, TheBaselineMayComeBeforeTheFocalLength) {
                    40.0);
 }
 
+// The keys of ORB-SLAM3's TUM-VI.yaml, with shortened numbers.
+TEST_F(SettingsOrbSlam3, AFisheyeIsRead) {
+  const PinholeCamera camera =
+      Read(
+          "%YAML:1.0\nFile.version: \"1.0\"\nCamera.type: \"KannalaBrandt8\"\n"
+          "Camera1.fx: 190.978\nCamera1.fy: 190.973\nCamera1.cx: 254.932\nCamera1.cy: 256.897\n"
+          "Camera1.k1: 0.00348\nCamera1.k2: 0.000715\nCamera1.k3: -0.00205\n"
+          "Camera1.k4: 0.000203\nCamera1.overlappingBegin: 0\nCamera1.overlappingEnd: 511\n"
+          "Camera.width: 512\nCamera.height: 512\nCamera.newWidth: 512\nCamera.newHeight: 512\n")
+          .camera;
+  EXPECT_TRUE(camera.IsFisheye());
+  EXPECT_EQ(camera.k4, 0.000203);
+  EXPECT_EQ(camera.cx, 254.932) << "the images keep their size";
+}
+
 TEST_F(SettingsOrbSlam3, RectifiedImagesHaveNoDistortion) {
   ExpectError("Camera.type", "Camera.type: \"Rectified\"",
               {"camera.yaml:9: Camera1.k1 is '0.262383'", "Rectified"});
@@ -123,15 +138,15 @@ TEST_F(SettingsOrbSlam3, RectifiedImagesHaveNoDistortion) {
 }
 
 TEST_F(SettingsOrbSlam3, SettingsThatCannotBeTranslatedAreNamed) {
-  ExpectError("Camera.type", "Camera.type: \"KannalaBrandt8\"",
-              {"camera.yaml:3: Camera.type is 'KannalaBrandt8'", "\"PinHole\" or \"Rectified\"",
+  ExpectError("Camera.type", "Camera.type: \"Omni\"",
+              {"camera.yaml:3: Camera.type is 'Omni'", "\"PinHole\" or \"Rectified\"",
                "no other camera model"});
   ExpectError("File.version", "File.version: \"2.0\"",
               {"camera.yaml:2: File.version is '2.0'", "\"1.0\""});
   ExpectError("", "System.thFarPoints: 20.0", {"System.thFarPoints", "far points"});
   ExpectError("", "System.LoadAtlasFromFile: \"a\"", {"System.LoadAtlasFromFile", "maps"});
-  ExpectError("Camera.newWidth", "Camera.newWidth: 640",
-              {"camera.yaml:17: Camera.newWidth is '640'", "Camera.width, '1280'", "resize"});
+  ExpectError("Camera.newWidth", "Camera.newWidth: 8",
+              {"camera.yaml:17: Camera.newWidth is '8'", "from 16 to 16384"});
 }
 
 TEST_F(SettingsOrbSlam3, BadValuesAreReportedByTheNameInTheFile) {

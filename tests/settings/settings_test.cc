@@ -329,9 +329,43 @@ TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
 }
 
 // Azure Kinect and OAK-D have such lenses; ORB-SLAM3's forks write zeros.
-TEST_F(Settings, TheRationalModelIsRefusedByName) {
-  ExpectLineError("Camera.k4: 0.1", {"Camera.k4 is '0.1'", "rational model", "cannot use yet"});
-  EXPECT_EQ(Read(std::string(kMinimal) + "Camera.k6: 0.0\n").camera.k3, 0.0);
+TEST_F(Settings, TheRationalModelIsRead) {
+  const PinholeCamera camera =
+      Read(std::string(kMinimal) + "Camera.k4: 0.1\nCamera.k5: 0.02\nCamera.k6: 0.003\n").camera;
+  EXPECT_EQ(camera.k4, 0.1);
+  EXPECT_EQ(camera.k5, 0.02);
+  EXPECT_EQ(camera.k6, 0.003);
+  ExpectLineError("Camera.k4: much", {"Camera.k4 is 'much'", "a number"});
+  ExpectError(kMinimal, {"Camera.k4 is '9'", "cannot be undone", "because it folds"},
+              {"Camera.k4=9"});
+}
+
+TEST_F(Settings, AFisheyeHasItsTypeAndFourCoefficients) {
+  const std::string fisheye =
+      std::string(kMinimal) +
+      "Camera.type: \"KannalaBrandt8\"\nCamera.k1: 0.01\nCamera.k4: 0.002\n";
+  EXPECT_TRUE(Read(fisheye).camera.IsFisheye());
+  EXPECT_EQ(Read(fisheye).camera.k4, 0.002);
+  ExpectError(fisheye, {"Camera.p1 is '0.1', expected 0", "only k1 to k4"}, {"Camera.p1=0.1"});
+  ExpectError(fisheye, {"Camera.k1 is '-3'", "it folds", "px from the principal point"},
+              {"Camera.k1=-3"});
+  ExpectLineError("Camera.type: \"Omni\"", {"Camera.type is 'Omni'", "KannalaBrandt8"});
+}
+
+TEST_F(Settings, ACalibrationOfAnotherProgramIsReadAndNamed) {
+  const auto file = folder_.Write(
+      "camera.yaml",
+      "cam0:\n  camera_model: pinhole\n  intrinsics: [190, 191, 254, 256]\n"
+      "  distortion_model: equidistant\n  distortion_coeffs: [0.003, 0.0007, -0.002, 0.0002]\n"
+      "  resolution: [512, 512]\n");
+  SettingsReport report;
+  const std::vector<std::string> overrides = {"Camera.bf=20"};
+  const SystemOptions options = ReadSettings(file, {.overrides = overrides}, report);
+  EXPECT_EQ(options.camera.fy, 191.0);
+  EXPECT_EQ(options.camera.bf, 20.0);
+  EXPECT_EQ(report.camera_note,
+            "a camchain of Kalibr, camera cam0 of 1: 512x512 px, with a fisheye lens "
+            "(Kannala-Brandt)");
 }
 
 TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {

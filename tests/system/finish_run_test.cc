@@ -25,6 +25,8 @@ class FinishedPipeline : public Pipeline {
   using Pipeline::TakeEarlyFrames;
   void Begin(PipelineStart) override {}
   void SetLocalizationOnly(bool) override {}
+  void AwaitMasks(bool /*is_on*/) override {}
+  void AddDetections(LateDetections /*late*/) override {}
   FrameReport Track(std::shared_ptr<const Frame>) override { return {}; }
   void Finish(const Cancellation*, const ProgressCallback&) override {}
   std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation*, const ProgressCallback&) override {

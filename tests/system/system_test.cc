@@ -270,10 +270,12 @@ TEST_P(SystemTest, ResetGivesAnEmptySystem) {
   EXPECT_LT(MaxError(system.trajectory()), 0.01);
 }
 
-TEST_P(SystemTest, LocalizationIsSwitchedBetweenFrames) {
-  if (GetParam() == PipelineKind::kRealtime) {
-    GTEST_SKIP() << "keyframes that were requested before come at any time";
-  }
+// In real time, keyframes that were requested before come at any time.
+class WaitingSystemTest : public SystemTest {};
+INSTANTIATE_TEST_SUITE_P(All, WaitingSystemTest,
+                         testing::Values(PipelineKind::kSequential, PipelineKind::kThreaded));
+
+TEST_P(WaitingSystemTest, LocalizationIsSwitchedBetweenFrames) {
   System system(Wall::Options(), GetParam());
   EXPECT_THROW(system.SetLocalizationOnly(true), CheckError) << "there is no map yet";
   EXPECT_FALSE(system.is_localization_only());
@@ -613,6 +615,62 @@ TEST(System, MasksThatCannotBeUsedAreRefused) {
   refuse([](InstanceMask& mask) { mask.outlines[0][2].x() = std::nan(""); }, {"mask 1", "nan"});
   EXPECT_TRUE(system.frames().empty());
   EXPECT_EQ(system.Track(1.0, image, depth, {good}).state, TrackingState::kTracked);
+}
+
+// The detections of a keyframe; empty if the frame is none.
+std::vector<Detection> DetectionsOfKeyframe(const System& system, FrameId frame) {
+  const auto keyframe = system.map()->KeyframeOfFrame(frame);
+  return keyframe ? system.map()->keyframes().At(*keyframe).frame->detections
+                  : std::vector<Detection>();
+}
+
+TEST_P(SystemTest, MasksThatComeLateGiveTheDetectionsOfMasksInTime) {
+  System in_time(Wall::Options(), GetParam());
+  in_time.Track(Time(0), TheWall().Photograph(0), Wall::Depth(0), SquareMask());
+  in_time.Finish();
+  const std::vector<Detection> expected = DetectionsOfKeyframe(in_time, FrameId(0));
+  ASSERT_EQ(expected.size(), 1u);
+
+  System system(Wall::Options(), GetParam());
+  system.AwaitMasks(true);
+  cv::Mat depth = Wall::Depth(0);
+  const TrackedFrame first = system.Track(Time(0), TheWall().Photograph(0), depth);
+  depth.setTo(0);  // the caller's image may be overwritten
+  for (int i = 1; i < 5; ++i) {
+    TrackFrame(system, i);
+  }
+  EXPECT_TRUE(system.AddMasks(first.frame, SquareMask()));
+  EXPECT_FALSE(system.AddMasks(first.frame, SquareMask())) << "for the second time";
+  EXPECT_FALSE(system.AddMasks(FrameId(77), SquareMask())) << "no such frame";
+  EXPECT_EQ(system.object_counts().frames_with_masks, 1u);
+  system.Finish();
+  const std::vector<Detection> late = DetectionsOfKeyframe(system, first.frame);
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].hull, expected[0].hull);
+  EXPECT_EQ(late[0].keypoints, expected[0].keypoints);
+  EXPECT_EQ(late[0].points.Unpack(), expected[0].points.Unpack());
+  EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
+}
+
+TEST(System, MasksMayComeTwoSecondsLate) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const auto track = [&](double timestamp, int index) {
+    return system.Track(timestamp, TheWall().Photograph(index), Wall::Depth(index)).frame;
+  };
+  const FrameId unasked = track(1.0, 0);
+  EXPECT_FALSE(system.AddMasks(unasked, SquareMask())) << "AwaitMasks was not called";
+  system.AwaitMasks(true);
+  const FrameId early = track(2.0, 1);
+  const FrameId later = track(2.1, 2);
+  track(4.05, 3);
+  EXPECT_FALSE(system.AddMasks(early, SquareMask()));
+  ExpectInputError([&] { system.AddMasks(later, {InstanceMask()}); }, {"mask 0"});
+  EXPECT_TRUE(system.AddMasks(later, SquareMask())) << "refused masks change nothing";
+  system.Finish();
+  const FrameId last = system.frames().back().frame;
+  EXPECT_THROW(system.AddMasks(last, SquareMask()), CheckError);
+  system.Reset();
+  EXPECT_FALSE(system.AddMasks(track(1.0, 0), SquareMask())) << "Reset switches it off";
 }
 
 TrackedFrame TrackWithVectors(System& system, int index, const std::vector<size_t>& lengths) {

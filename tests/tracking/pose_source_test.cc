@@ -86,11 +86,13 @@ TEST_F(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
 class ByReferenceKeyframe : public testing::TestWithParam<bool> {
  protected:
   std::optional<PoseEstimate> Find(const Frame& frame) const {
-    const Keyframe& reference = made_.map.keyframes().At(KeyframeId(3));
+    return Find(frame, made_.map.keyframes().At(KeyframeId(3)).cam_from_world);
+  }
+  std::optional<PoseEstimate> Find(const Frame& frame, const Rigid3& last_pose) const {
     LastFrame last;
-    last.frame = reference.frame;
+    last.frame = made_.map.keyframes().At(KeyframeId(3)).frame;
     last.reference = KeyframeId(3);
-    last.cam_from_world = reference.cam_from_world;
+    last.cam_from_world = last_pose;
     return PoseByReferenceKeyframe(frame, made_.map, {world_.sensor(), options_, objects_, index_},
                                    last);
   }
@@ -111,6 +113,27 @@ TEST_P(ByReferenceKeyframe, FindsFramesNearIt) {
     EXPECT_LT((estimate->cam_from_world.translation - truth.translation).norm(), 0.01);
     EXPECT_LT(AngularDistance(estimate->cam_from_world.rotation, truth.rotation), 0.003);
     EXPECT_GT(estimate->inliers, 40);
+  }
+}
+
+// After a fast turn, or in a recording of few images, the last pose says little. If most of the
+// matches are wrong, a refinement that begins there ends at a wrong pose.
+TEST_P(ByReferenceKeyframe, FindsFramesFarFromTheLastPoseAmongWrongMatches) {
+  const Rigid3 truth = RingWorld::CamFromWorld(3.0 / 24.0);
+  Frame frame = *world_.Observe(FrameId(1000), truth).frame;
+  frame.words.clear();
+  std::ranges::fill(frame.features.depth, 0.0F);
+  std::ranges::fill(frame.features.right_u, -1.0F);
+  std::vector<Keypoint>& keypoints = frame.features.keypoints;
+  for (size_t i = 0; i + 2 < keypoints.size(); i += 3) {
+    std::swap(keypoints[i].undistorted, keypoints[i + 2].undistorted);
+  }
+  for (const double turn : {0.8, 1.2, 1.6, 2.4}) {
+    const Rigid3 last = Rigid3(ExpSo3({0.0, turn, 0.0}), {0.0, 0.0, 0.5}) * truth;
+    const auto estimate = Find(frame, last);
+    ASSERT_TRUE(estimate) << turn;
+    EXPECT_LT((estimate->cam_from_world.translation - truth.translation).norm(), 0.01);
+    EXPECT_LT(AngularDistance(estimate->cam_from_world.rotation, truth.rotation), 0.003);
   }
 }
 

@@ -36,7 +36,7 @@ std::vector<Placement> BackDesk() {
           {"cell phone", {0.08, 0.55, kLoopTop}, 60.0}};
 }
 
-// What stands on the floor, outside the path of the camera.
+// Things on the floor, outside the path of the camera.
 std::vector<Placement> Surroundings() {
   return {{"chair", {0.15, -0.95, 0.0}, 175.0, Red()},
           {"chair", {-0.25, 0.95, 0.0}, 5.0, Blue()},

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "camera/kannala_brandt.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam::synthetic {
@@ -126,12 +128,6 @@ std::vector<cv::Point> FacetEdges(const cv::Mat& facet) {
 struct Renderer::Eye {
   Matrix3f world_from_cam;
   Vector3f centre;
-
-  Vector3f Direction(const PinholeCamera& camera, float x, float y) const {
-    const Vector3f in_cam(static_cast<float>((x - camera.cx) / camera.fx),
-                          static_cast<float>((y - camera.cy) / camera.fy), 1.0F);
-    return world_from_cam * in_cam;
-  }
 };
 
 struct Renderer::View {
@@ -151,7 +147,20 @@ struct Renderer::Fragment {
 
 Renderer::Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time)
     : scene_(scene), camera_(camera), readout_time_(readout_time), caster_(scene) {
-  Check(!camera.IsDistorted(), "the renderer needs a camera without distortion");
+  Check(camera.IsFisheye() || !camera.IsDistorted(),
+        "the renderer needs a fisheye lens or a camera without distortion");
+  if (camera.IsFisheye()) {
+    largest_angle_ = LargestAngle(camera, std::numbers::pi);
+  }
+}
+
+Vector3f Renderer::Direction(const Eye& eye, float x, float y) const {
+  if (camera_.IsFisheye()) {
+    return eye.world_from_cam * RayOfRawPixel(camera_, {x, y}, largest_angle_).cast<float>();
+  }
+  const Vector3f in_cam(static_cast<float>((x - camera_.cx) / camera_.fx),
+                        static_cast<float>((y - camera_.cy) / camera_.fy), 1.0F);
+  return eye.world_from_cam * in_cam;
 }
 
 Renderer::View Renderer::MakeView(double time) const {
@@ -250,7 +259,7 @@ void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& fram
     const int x = x0 + i % kBlockColumns;
     const int y = y0 + i / kBlockColumns;
     packet.direction[static_cast<size_t>(i)] =
-        eye.Direction(camera_, static_cast<float>(x), static_cast<float>(y));
+        Direction(eye, static_cast<float>(x), static_cast<float>(y));
   }
   caster_.Cast(eye.centre, view.world_from_object, packet);
   for (int i = 0; i < RayPacket::kSize; ++i) {
@@ -268,6 +277,9 @@ void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& fram
     frame.instance.at<int16_t>(y, x) =
         static_cast<int16_t>(caster_.parts()[static_cast<size_t>(packet.part[k])].object);
     frame.cosine.at<float>(y, x) = hit.cosine;
+    if (!frame.axial.empty()) {
+      frame.axial.at<float>(y, x) = eye.world_from_cam.col(2).dot(packet.direction[k]);
+    }
     facet.at<int>(y, x) = hit.facet;
   }
 }
@@ -302,8 +314,8 @@ void Renderer::SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame
     for (size_t i = 0; i < RayPacket::kSize; ++i) {
       const cv::Point& pixel = pixels[i / kOffsets.size()];
       const auto& offset = kOffsets[i % kOffsets.size()];
-      packet.direction[i] = eye.Direction(camera_, static_cast<float>(pixel.x) + offset[0],
-                                          static_cast<float>(pixel.y) + offset[1]);
+      packet.direction[i] = Direction(eye, static_cast<float>(pixel.x) + offset[0],
+                                      static_cast<float>(pixel.y) + offset[1]);
     }
     caster_.Cast(eye.centre, view.world_from_object, packet);
     std::array<Vector3f, 2> sums = {Vector3f::Zero(), Vector3f::Zero()};
@@ -324,7 +336,8 @@ RenderedFrame Renderer::Render(double time) const {
   RenderedFrame frame{.colour = cv::Mat(size, CV_32FC3),
                       .depth = cv::Mat(size, CV_32FC1),
                       .instance = cv::Mat(size, CV_16SC1),
-                      .cosine = cv::Mat(size, CV_32FC1)};
+                      .cosine = cv::Mat(size, CV_32FC1),
+                      .axial = camera_.IsFisheye() ? cv::Mat(size, CV_32FC1) : cv::Mat()};
   cv::Mat facet(size, CV_32SC1);
   const View view = MakeView(time);
   RenderCentres(view, frame, facet);

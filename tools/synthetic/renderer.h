@@ -15,17 +15,21 @@ namespace hullslam::synthetic {
 // The images of an ideal camera, all of the same size. The centre of a pixel has integer
 // coordinates.
 struct RenderedFrame {
-  cv::Mat colour;    // CV_32FC3, BGR, 0 to 255, edges smoothed by four rays per pixel
-  cv::Mat depth;     // CV_32FC1, metres along z at the centre of the pixel
+  cv::Mat colour;  // CV_32FC3, BGR, 0 to 255, edges smoothed by four rays per pixel
+  // CV_32FC1, metres at the centre of the pixel: along z, or along the ray of a fisheye lens.
+  cv::Mat depth;
   cv::Mat instance;  // CV_16SC1, index in Scene::objects, -1 for the background
   cv::Mat cosine;    // CV_32FC1, of the angle between surface normal and ray
+  // CV_32FC1, cosine of the angle between the ray of a fisheye lens and the axis; else empty.
+  cv::Mat axial = {};
 };
 
 // Renders frames of a scene. Several threads may render at the same time. Each frame has the same
 // bits in every run.
 class Renderer {
  public:
-  // Keeps a reference to `scene`. The camera must have no distortion. `readout_time`: seconds from
+  // Keeps a reference to `scene`. The camera must have no distortion, or a fisheye lens, which is
+  // rendered exactly. `readout_time`: seconds from
   // the exposure of the top row of an image to that of the bottom row (rolling shutter).
   Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time = 0.0);
 
@@ -36,6 +40,8 @@ class Renderer {
   struct Eye;       // pose of the camera while some rows are exposed
   struct View;      // poses during one frame
   struct Fragment;  // the point that a ray hits
+  // World frame; of length 1 along z, with a fisheye lens of length 1.
+  Eigen::Vector3f Direction(const Eye& eye, float x, float y) const;
   Fragment Shade(const View& view, const Eye& eye, int part, float distance,
                  const Eigen::Vector3f& direction, int max_samples) const;
   View MakeView(double time) const;
@@ -50,6 +56,7 @@ class Renderer {
 
   const Scene& scene_;
   PinholeCamera camera_;
+  double largest_angle_ = 0.0;  // of a fisheye lens
   double readout_time_;
   RayCaster caster_;
 };

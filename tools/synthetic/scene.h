@@ -29,7 +29,7 @@ struct Part {
   Rigid3 owner_from_part;
 };
 
-// What a rearrangement did with an object.
+// The change of an object by a rearrangement.
 enum class ObjectStatus { kUnchanged, kMoved, kNew };
 
 // An object that a segmentation network would find, or a thing without a class, which gets no mask.

@@ -108,6 +108,17 @@ cv::Mat ThroughBayerFilter(const cv::Mat& image) {
   return colours;
 }
 
+// The depths along z of depths along the rays of a fisheye lens; unknown from 90 degrees on.
+void ToDepthAlongZ(const cv::Mat& axial, cv::Mat& image) {
+  for (int y = 0; y < image.rows && !axial.empty(); ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      auto& depth = image.at<uint16_t>(y, x);
+      const float cosine = std::max(0.0F, axial.at<float>(y, x));
+      depth = static_cast<uint16_t>(std::lround(cosine * static_cast<float>(depth)));
+    }
+  }
+}
+
 uint16_t ToUnits(double metres, double units_per_metre) {
   const double units = std::round(metres * units_per_metre);
   return units > 65535.0 ? uint16_t{0} : static_cast<uint16_t>(units);
@@ -205,6 +216,7 @@ cv::Mat Sensor::Depth(const RenderedFrame& frame, uint32_t number) const {
       image.at<uint16_t>(y, x) = in_range(z) ? ToUnits(z, options_.units_per_metre) : 0;
     }
   }
+  ToDepthAlongZ(frame.axial, image);
   return image;
 }
 

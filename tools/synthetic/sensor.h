@@ -39,10 +39,10 @@ class Sensor {
   // The colour image, CV_8UC3, BGR, with vignetting, slow changes of exposure, and noise. A part of
   // the noise grows with the brightness.
   cv::Mat Colour(const RenderedFrame& frame, uint32_t number) const;
-  // The depth image, CV_16UC1, 0 where unknown. The disparity gets noise of half a step, which
-  // neighbours partly share as in block matching, and is then rounded, so that the error of the
-  // depth grows with z^2. The depth is unknown if it is out of range, if the surface is seen at a
-  // grazing angle, and if the projector (to the right of the camera) does not reach the surface.
+  // The depth image (along z), CV_16UC1, 0 where unknown. The disparity gets noise of half a step,
+  // which neighbours partly share as in block matching, and is then rounded, so that the error of
+  // the depth grows with z^2. The depth is unknown if it is out of range, if the surface is seen at
+  // a grazing angle, and if the projector (to the right of the camera) does not reach the surface.
   // Many pixels at depth edges are unknown too; other pixels there take the depth of a neighbour.
   // With kIclNuim, each pixel takes the depth at a point beside it, whose disparity gets a little
   // noise and is rounded; all pixels within the range are known (Barron and Malik 2013).

@@ -68,17 +68,26 @@ std::string IclAssociations(int frames) {
   return text;
 }
 
+std::string LensSettings(const PinholeCamera& camera) {
+  return camera.IsFisheye() ? fmt::format(
+                                  "Camera.type: \"KannalaBrandt8\"\nCamera.k1: {}\nCamera.k2: {}\n"
+                                  "Camera.k3: {}\nCamera.k4: {}\n",
+                                  camera.k1, camera.k2, camera.k3, camera.k4)
+                            : "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n";
+}
+
 std::string CameraSettings(const SequencePlan& plan) {
   const PinholeCamera& camera = plan.camera;
   std::string text = fmt::format(
       "%YAML:1.0\n---\nCamera.fx: {:.6f}\nCamera.fy: {:.6f}\nCamera.cx: {:.6f}\nCamera.cy: {:.6f}\n"
-      "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
+      "{}"
       "Camera.width: {}\nCamera.height: {}\nCamera.fps: 30.0\nCamera.bf: {:.{}f}\n"
       "ThDepth: 40.0\nDepthMapFactor: {:.1f}\n"
       "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
       "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n",
-      camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height, camera.bf,
-      plan.stereo_baseline > 0.0 ? 6 : 1, plan.sensor.units_per_metre);
+      camera.fx, camera.fy, camera.cx, camera.cy, LensSettings(camera), camera.width, camera.height,
+      camera.bf, plan.stereo_baseline > 0.0 || camera.IsFisheye() ? 6 : 1,
+      plan.sensor.units_per_metre);
   if (plan.readout_time != 0.0) {
     text += fmt::format("Camera.readout_time: {}\n", plan.readout_time);
   }
@@ -118,7 +127,7 @@ void AddStatus(const SceneObject& object, nlohmann::ordered_json& entry) {
   }
 }
 
-// What stands on what, and the supports that no object is (floors and tables).
+// The supports of objects, also those that are no objects (floors and tables).
 void AddRelations(const Scene& scene, nlohmann::ordered_json& file) {
   file["supports"] = nlohmann::ordered_json::array();
   for (const Support& support : scene.supports) {

@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
+#include "camera/kannala_brandt.h"
 #include "hullslam/util/check.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_renderer.h"
@@ -29,8 +31,8 @@ bool IsFormerSequence(const fs::path& folder) {
 }
 
 // The baseline of the camera's settings is that of the stereo pair, if it is one.
-PinholeCamera CameraWith(double stereo_baseline) {
-  PinholeCamera camera = SyntheticCamera();
+PinholeCamera CameraWith(double stereo_baseline, double fisheye) {
+  PinholeCamera camera = fisheye > 0.0 ? SyntheticFisheye(fisheye) : SyntheticCamera();
   camera.bf = stereo_baseline > 0.0 ? stereo_baseline * camera.fx : camera.bf;
   return camera;
 }
@@ -41,7 +43,7 @@ SequencePlan MakePlan(const SequenceOptions& options) {
           .rearranged = options.rearranged,
           .scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged),
           .frames = options.frames,
-          .camera = CameraWith(options.stereo_baseline),
+          .camera = CameraWith(options.stereo_baseline, options.fisheye),
           .stereo_baseline = options.stereo_baseline,
           .readout_time = options.readout_time,
           .sensor = {.noise = options.noise},
@@ -52,6 +54,22 @@ SequencePlan MakePlan(const SequenceOptions& options) {
 }  // namespace
 
 PinholeCamera SyntheticCamera() { return {.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6}; }
+
+// The coefficients are about those of a lens of 180 degrees and more (TUM-VI). The virtual stereo
+// camera keeps its baseline.
+PinholeCamera SyntheticFisheye(double field_of_view) {
+  const PinholeCamera pinhole = SyntheticCamera();
+  PinholeCamera camera = pinhole;
+  camera.lens = LensModel::kKannalaBrandt;
+  camera.k1 = 0.0035;
+  camera.k2 = 0.0007;
+  camera.k3 = -0.002;
+  camera.k4 = 0.0002;
+  const double half = 0.5 * field_of_view * std::numbers::pi / 180.0;
+  camera.fx = camera.fy = 0.5 * camera.width / RadiusOfAngle(camera, half);
+  camera.bf = pinhole.bf / pinhole.fx * camera.fx;
+  return camera;
+}
 
 bool WriteSequence(const fs::path& folder, const SequenceOptions& options,
                    const std::function<bool(int)>& progress) {

@@ -21,11 +21,16 @@ struct SequenceOptions {
   double readout_time = 0.0;  // s, from the top to the bottom row of an image (rolling shutter)
   // m; above 0, a stereo camera has a second camera with the same directions as far to the right
   double stereo_baseline = 0.0;
+  // Degrees; above 0, a Kannala-Brandt lens has this field of view across the width of the image.
+  double fisheye = 0.0;
   int threads = 0;  // 0: as many as the CPU supports
 };
 
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.
 PinholeCamera SyntheticCamera();
+
+// The same image through a Kannala-Brandt lens with this field of view across its width, degrees.
+PinholeCamera SyntheticFisheye(double field_of_view);
 
 // Renders a scene and writes a folder in TUM's format with ground truth (docs/synthetic.md). The
 // result does not depend on `threads`: the same options give the same bytes. Everything is written

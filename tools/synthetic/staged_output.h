@@ -7,7 +7,7 @@
 
 namespace hullslam::synthetic {
 
-// What an output folder may already contain.
+// The content that an output folder may already have.
 struct FormerOutput {
   std::string what;  // "a sequence", for messages
   // Whether the folder contains such an output of make_synthetic and nothing else.

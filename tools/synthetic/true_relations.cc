@@ -157,7 +157,7 @@ std::optional<size_t> SupportUnder(const SolidObject& a, const std::vector<Suppo
   return std::nullopt;
 }
 
-// What the object stands in or on.
+// The relation of the object to the thing that it stands in or on.
 std::optional<TrueRelation> FindStand(const SolidObject& a, const std::vector<SolidObject>& all,
                                       const std::vector<Support>& supports) {
   for (const SolidObject& b : all) {

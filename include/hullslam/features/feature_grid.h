@@ -20,6 +20,10 @@ class FeatureGrid {
   // 65535 keypoints.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
+  // Sorts by these positions, one per keypoint, in the box from 0 to `box_max`. FindNear() compares
+  // them too.
+  FeatureGrid(std::span<const Keypoint> keypoints, std::vector<Eigen::Vector2f> positions,
+              const Eigen::Vector2f& box_max);
 
   // The grid of the keypoints with these indices, which increase. Their new indices are their
   // indices in `kept`. A grid without keypoints stays as it is.
@@ -31,7 +35,13 @@ class FeatureGrid {
   void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
                 int min_level, int max_level, std::vector<uint32_t>& found) const;
 
+  // The position by which a keypoint is sorted.
+  Eigen::Vector2f PositionOf(std::span<const Keypoint> keypoints, uint32_t keypoint) const {
+    return positions_.empty() ? keypoints[keypoint].undistorted : positions_[keypoint];
+  }
+
  private:
+  void Sort(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_max);
   int Column(float x) const;
   int Row(float y) const;
 
@@ -41,8 +51,9 @@ class FeatureGrid {
   static constexpr int kRows = 24;
   Eigen::Vector2f min_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_pixel_ = Eigen::Vector2f::Zero();
-  std::vector<uint16_t> cell_start_;  // kColumns kRows + 1, into order_; column-major
-  std::vector<uint16_t> order_;       // keypoint indices, cell by cell
+  std::vector<uint16_t> cell_start_;        // kColumns kRows + 1, into order_; column-major
+  std::vector<uint16_t> order_;             // keypoint indices, cell by cell
+  std::vector<Eigen::Vector2f> positions_;  // empty: those of the keypoints
 };
 
 }  // namespace hullslam

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string>
+#include <vector>
 
+#include "hullslam/features/feature_set.h"
 #include "hullslam/frame/frame.h"
 
 namespace hullslam {
@@ -35,12 +38,20 @@ struct DetectionCounts {
   void Add(const DetectionCounts& other);
 };
 
+// What the detections of a frame are made from, besides its masks.
+struct DetectionInput {
+  cv::Mat depth;                       // as in ImageInput
+  std::vector<RawKeypoint> keypoints;  // those of the frame
+};
+
 // A frame that is not tracked yet. Building it needs no map, so it can be done ahead of tracking.
 struct BuiltFrame {
   std::unique_ptr<Frame> frame;  // its id is set when it is tracked
   DetectionCounts masks;
   std::chrono::steady_clock::time_point begin;  // when building began
   double milliseconds = 0.0;                    // how long building took
+  // For masks that come later (System::AddMasks); null if the masks of the frame are known.
+  std::shared_ptr<const DetectionInput> awaiting = nullptr;
 };
 
 }  // namespace hullslam

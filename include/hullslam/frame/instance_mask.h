@@ -24,7 +24,7 @@ struct InstanceMask {
   // Closed outlines without holes, one per connected part, the largest first. Each has at least
   // three points. A box has one outline with its four corners; an ellipse has one with 64 points.
   std::vector<std::vector<Eigen::Vector2d>> outlines;
-  // What the object looks like, as a vector of any network (CLIP or the like), of which only the
+  // The appearance of the object, a vector of any network (CLIP or the like), of which only the
   // direction counts; all of a run have the same number of elements. Empty if there is none.
   std::vector<float> embedding = {};
 };

@@ -36,6 +36,22 @@ struct Sensor {
   double readout_time = 0.0;
   ReadoutDirection readout_direction = ReadoutDirection::kRows;
 
+  // Whether an undistorted pixel is in the image.
+  bool Sees(const Eigen::Vector2d& pixel) const {
+    return bounds.Contains(pixel) && (!camera.IsFisheye() || camera.SeesRaw(camera.Distort(pixel)));
+  }
+  // The pixel in which distances in the image are measured, such as the windows of matching: the
+  // raw one of a fisheye lens, whose undistorted image is stretched, else the undistorted one.
+  Eigen::Vector2d ToGrid(const Eigen::Vector2d& pixel) const {
+    return camera.IsFisheye() ? camera.Distort(pixel) : pixel;
+  }
+  // The bounds of ToGrid().
+  PinholeCamera::Bounds GridBounds() const {
+    return camera.IsFisheye() ? PinholeCamera::Bounds{.max_x = static_cast<double>(camera.width),
+                                                      .max_y = static_cast<double>(camera.height)}
+                              : bounds;
+  }
+
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
   // Baseline of the stereo pair, for RGB-D a virtual one, m; 0 for a monocular camera.
   double baseline() const { return IsMonocular() ? 0.0 : camera.bf / camera.fx; }

@@ -99,8 +99,16 @@ struct MapCorrection {
   std::optional<LoopEdge> loop;
 };
 
+// The detections of a frame whose masks came after it was tracked. If a keyframe was made of the
+// frame, it gets them.
+struct LateDetections {
+  FrameId frame;
+  std::vector<Detection> detections;
+  size_t keypoints = 0;  // of the frame, to which the detections refer
+};
+
 // The messages that the mapper receives.
-using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection>;
+using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection, LateDetections>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
 

@@ -14,7 +14,7 @@ namespace hullslam {
 // sense in a map of unknown scale. Each struct binds those of its fields that are settings, in the
 // scope of its own path; the others are fixed.
 
-// How a detection and an object are compared (src/objects/association_measure.h).
+// How a detection and an object are compared (src/objects/comparison/association_measure.h).
 enum class AssociationMeasure { kCombined, kClassOverlap, kWasserstein };
 
 // How the first quadric of an object is made (src/objects/start_method.h).
@@ -52,8 +52,11 @@ struct AssociationOptions {
 // The conditions for computing the shape of a candidate, and its start.
 struct StartOptions {
   ObjectStart method = ObjectStart::kFitted;
-  int min_views = 3;                         // keyframes
-  double min_parallax = 3.0;                 // degrees between viewing rays, with depth
+  int min_views = 3;  // keyframes
+  // Degrees between viewing rays, with depth. Depth tells where an object is, and max_elongation
+  // guards its extent along the view, so the views need only differ: at 3 degrees 78 of 115
+  // visible objects of eight sequences were mapped, at 1 degree 101, and one of them twice at 0.
+  double min_parallax = 1.0;
   double min_parallax_without_depth = 15.0;  // degrees
   int max_points = 2000;                     // approximate largest number of depth points
   double trimmed = 0.03;        // share of the points that is left out at each end of each axis

@@ -51,7 +51,7 @@ struct ImageSequence {
   // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
   // run.
   std::optional<Trajectory> converted_groundtruth;
-  // What the user should know of faults in the files that do not end a run.
+  // Messages for the user about faults in the files that do not end a run.
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
@@ -67,6 +67,9 @@ struct ImageSequence {
   ColourLoader load_colour = nullptr;
   // Moves a mask of the image as read into the image that `load` gives. Null if they are the same.
   std::function<void(InstanceMask&)> fit_mask = nullptr;
+  // The size of the images as read, px, if `load` resizes them; else 0.
+  int read_width = 0;
+  int read_height = 0;
 };
 
 // The true trajectory, from the field that is set; absent without ground truth. The file may have

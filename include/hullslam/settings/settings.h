@@ -21,7 +21,8 @@ enum class NegativeFy {
 };
 
 // Reads a settings file in the format of ORB-SLAM2 (OpenCV YAML: `key: value` lines after a first
-// line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
+// line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), or only the camera from a
+// calibration of OpenCV, ROS, Kalibr, EuRoC or stella_vslam, then applies `overrides` of the
 // form `key=value`, then validates the result. Missing keys keep their defaults; Camera.fx, fy, cx
 // and cy have no default. Throws InputError that names file, line, key, value and what was
 // expected. If `warnings` is not null, a warning is added for each key that has a new name, and for
@@ -31,7 +32,7 @@ SystemOptions ReadSettings(const std::filesystem::path& file,
                            NegativeFy negative_fy = NegativeFy::kError,
                            std::vector<std::string>* warnings = nullptr);
 
-// What is set beside the settings file of a camera, in the order preset, file, overrides.
+// The settings beside the settings file of a camera, in the order preset, file, overrides.
 struct SettingsSources {
   const Preset* preset = nullptr;               // null: none
   std::span<const std::string> overrides = {};  // key=value
@@ -47,10 +48,16 @@ struct PresetOverride {
   std::string origin;  // FILE:LINE of the settings file, the name of a calibration, or --set
 };
 
-// What a user should be told about the settings.
+// Messages for the user about the settings.
 struct SettingsReport {
   std::vector<std::string> warnings;             // also one per override by a file or a calibration
   std::vector<PresetOverride> preset_overrides;  // sorted by key
+  // What the file was recognised as, if it is no settings file, and any lens other than Brown's.
+  std::string camera_note;
+  // The size of the images as read, px, if they are to be resized (Camera.newWidth); else 0. The
+  // camera is that of the resized images.
+  int read_width = 0;
+  int read_height = 0;
 };
 
 // The same with a preset, whose settings the file and the overrides replace.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <list>
 #include <map>
@@ -104,6 +105,20 @@ class System {
   void SetLocalizationOnly(bool is_on);
   bool is_localization_only() const { return is_localization_only_; }
 
+  // For masks that are made more slowly than images come, as by a network in a run in real time:
+  // from now on, a frame that is built without masks awaits those that AddMasks() brings. A
+  // keyframe of such a frame says nothing about objects until then, instead of that there are none.
+  // Reset() switches this off.
+  void AwaitMasks(bool is_on);
+  // Adds the masks of a frame that was tracked without, also an empty list if the image shows no
+  // object. If a keyframe was made of the frame, it gets their detections, and objects are mapped
+  // with them; other frames were tracked already, and their masks change nothing. To be called by
+  // the thread of Track. Returns false, and does nothing, for a frame that awaits no masks (any
+  // more): its masks were added, or its time stamp is more than kMaskPatience before that of the
+  // last frame. Throws as Track does.
+  bool AddMasks(FrameId frame, std::vector<InstanceMask> masks);
+  static constexpr double kMaskPatience = 2.0;  // s
+
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
   // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.
@@ -161,6 +176,7 @@ class System {
  private:
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
+  void KeepAwaiting(FrameId frame, double timestamp, std::shared_ptr<const DetectionInput> input);
   void CheckStamp(double timestamp) const;
   void CheckVectors(const Frame& frame);
 
@@ -174,7 +190,15 @@ class System {
   std::unique_ptr<Pipeline> pipeline_;
   std::atomic<bool> is_tracking_ = false;
   std::unique_ptr<TaskRunner> runner_;  // for building frames
-  DetectionCounts mask_counts_;         // counts of the tracked frames
+  std::atomic<bool> awaits_masks_ = false;
+  // The frames that await masks, in the order of their stamps.
+  struct AwaitingFrame {
+    FrameId frame;
+    double timestamp = 0.0;
+    std::shared_ptr<const DetectionInput> input;
+  };
+  std::deque<AwaitingFrame> awaiting_;
+  DetectionCounts mask_counts_;  // counts of the tracked frames
   std::function<void(const FrameReport&)> frame_callback_;
   MappedVector<TrackedFrame> frames_;
   std::list<RememberedFrame> remembered_;  // until Finish, but not all frames of a long run

@@ -8,7 +8,7 @@
 namespace hullslam {
 
 // The rules for making a frame a keyframe. kHullslam: keyframes are spread evenly in time
-// (src/tracking/keyframe_policy.h); kOrbSlam2: src/tracking/orb_slam2_keyframe_rule.h.
+// (src/tracking/keyframe_policy.h); kOrbSlam2: src/tracking/comparison/orb_slam2_keyframe_rule.h.
 enum class KeyframeRule { kHullslam, kOrbSlam2 };
 
 struct TrackingOptions {

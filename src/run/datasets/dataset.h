@@ -29,7 +29,7 @@ class Dataset {
   virtual DatasetHelp Help(SensorKind sensor) const = 0;
   // Adds options that only this data set has.
   virtual void AddOptions(CLI::App& /*app*/) {}
-  // What --groundtruth must fit, for a message: its stamps are not those of the images.
+  // The stamps that --groundtruth should have, for the message that they fit no image.
   virtual std::string ExpectedStamps() const { return "stamps of the same clock"; }
   // Whether Open() reads the file of --groundtruth itself.
   virtual bool ReadsGroundtruth() const { return false; }

@@ -15,6 +15,7 @@ constexpr const char* kConvert = "Use the results in other programs";
 constexpr std::array kCommands = {
     Command{kPrepare, "check-masks", "checks the masks of a sequence, and can draw them",
             "check_masks", RunCheckMasks},
+    Command{kPrepare, "segment", "makes masks of images with a network", nullptr, RunSegment},
     Command{kPrepare, "make-synthetic", "renders a sequence whose poses and objects are known",
             "make_synthetic", nullptr},
     Command{kPrepare, "train-vocabulary", "trains a vocabulary of visual words on images",

@@ -135,13 +135,10 @@ std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
   if (!file.empty()) {
     const std::string text = ReadText(file);
     CheckUtf8(file, text);
-    for (size_t begin = 0; begin < text.size();) {
-      const size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string line(Trim(std::string_view(text).substr(begin, end - begin)));
-      if (!line.empty()) {
-        labels.insert(Printable(line));
+    for (const std::string_view line : LinesOf(text)) {
+      if (const std::string label(Trim(line)); !label.empty()) {
+        labels.insert(Printable(label));
       }
-      begin = end + 1;
     }
   }
   return labels;

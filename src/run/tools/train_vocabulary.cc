@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,6 +21,7 @@
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"
 #include "sequences/image_file.h"
+#include "util/lower_case.h"
 #include "util/parallel_runner.h"
 
 namespace hullslam {
@@ -69,9 +69,7 @@ void AddOptions(CLI::App& app, TrainVocabularyArguments& arguments) {
 }
 
 bool IsImage(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = LowerCase(path.extension().string());
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 

@@ -63,10 +63,15 @@ Evaluation Evaluate(const TrajectoryArguments& arguments) {
   if (const std::string missing = DescribeMissingPairs(evaluation.ate); !missing.empty()) {
     PrintError("warning: {}\n", missing);
   }
-  evaluation.rpe = EvaluateRpe(reference, estimate,
-                               {.scale = evaluation.ate.reference_from_estimate.scale,
-                                .pairing = arguments.ate.pairing,
-                                .max_difference = arguments.ate.max_difference});
+  const RpeOptions options = {.scale = evaluation.ate.reference_from_estimate.scale,
+                              .pairing = arguments.ate.pairing,
+                              .max_difference = arguments.ate.max_difference};
+  evaluation.rpe = EvaluateRpe(reference, estimate, options);
+  if (const std::string swapped =
+          DescribeSwappedRotations(reference, estimate, evaluation.rpe, options);
+      !swapped.empty()) {
+    PrintError("warning: {}\n", swapped);
+  }
   return evaluation;
 }
 

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "camera/kannala_brandt.h"
 #include "synthetic/camera_path.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/object_models.h"
@@ -80,6 +83,56 @@ TEST(Renderer, MasksAreTheProjectionsOfTheTrueDualQuadrics) {
     // The masks are biased neither to the inside nor to the outside.
     EXPECT_NEAR(sum / static_cast<double>(outline.vertices.size()), 0.0, 0.1);
   }
+}
+
+// An outline of raw pixels, undistorted, is that of the projected quadric: across, a raw pixel is
+// 1 / sqrt(det J) undistorted ones.
+TEST(Renderer, MasksOfAFisheyeAreTheProjectionsOfTheTrueDualQuadrics) {
+  const Scene scene = EllipsoidScene();
+  const PinholeCamera camera = SyntheticFisheye(150.0);
+  const Rigid3 world_from_cam =
+      scene.world_from_cam(0.0) * Rigid3(ExpSo3({0.0, 0.9, 0.0}), Vector3d::Zero());
+  Scene turned = scene;  // the objects are in the outer part of the image
+  turned.world_from_cam = [&](double) { return world_from_cam; };
+  const RenderedFrame frame = Renderer(turned, camera).Render(0.0);
+  const auto outlines = FindOutlines(frame.instance, 100);
+  ASSERT_GE(outlines.size(), 2u);
+  double farthest = 0.0;
+  for (const InstanceOutline& outline : outlines) {
+    const Matrix3d dual = DualConic(scene.objects[static_cast<size_t>(outline.object)],
+                                    Inverse(world_from_cam), camera);
+    for (const Vector2d& vertex : outline.vertices) {
+      const Vector2d pixel = camera.Undistort(vertex);
+      const double stretch = camera.DistortionJacobian(pixel).inverse().norm();
+      EXPECT_LT(std::abs(DistanceToConic(dual, pixel)), 0.9 * stretch) << vertex.transpose();
+      farthest = std::max(farthest, camera.Unproject(pixel, 1.0).norm());
+    }
+  }
+  EXPECT_GT(farthest, 2.0) << "some outline is more than 60 degrees from the axis";
+}
+
+TEST(Renderer, DepthOfAFisheyeIsAlongTheRay) {
+  const Scene scene = EllipsoidScene();
+  const PinholeCamera camera = SyntheticFisheye(200.0);
+  const RenderedFrame frame = Renderer(scene, camera).Render(1.0);
+  const Rigid3 world_from_cam = scene.world_from_cam(1.0);
+  const double largest = LargestAngle(camera, 3.1);
+  int behind = 0;
+  for (int y = 0; y < camera.height; y += 7) {
+    for (int x = 0; x < camera.width; x += 7) {
+      const Vector3d ray = RayOfRawPixel(camera, Vector2d(x, y), largest);
+      EXPECT_NEAR(frame.axial.at<float>(y, x), ray.z(), 1e-5);
+      behind += ray.z() < 0.0 ? 1 : 0;
+      if (frame.instance.at<int16_t>(y, x) >= 0) {
+        continue;
+      }
+      const Vector3d point = world_from_cam * Vector3d(frame.depth.at<float>(y, x) * ray);
+      const double wall = std::min(
+          {3.0 - std::abs(point.x()), 2.5 - std::abs(point.y()), point.z(), 2.5 - point.z()});
+      EXPECT_LT(std::abs(wall), 0.021) << x << " " << y;
+    }
+  }
+  EXPECT_GT(behind, 100);
 }
 
 TEST(Renderer, DepthIsTheDepthOfTheEllipsoidOrTheWall) {

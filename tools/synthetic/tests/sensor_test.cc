@@ -41,6 +41,17 @@ TEST(Sensor, WithoutNoiseDepthIsOnlyRounded) {
   EXPECT_EQ(colour.at<cv::Vec3b>(7, 9), cv::Vec3b(60, 120, 200));
 }
 
+// Range and noise are those along the ray; the image has the depth along z.
+TEST(Sensor, DepthOfAFisheyeIsAlongZ) {
+  RenderedFrame frame = FlatFrame(2.0F, 1.0F);
+  frame.axial = cv::Mat(frame.depth.size(), CV_32FC1, cv::Scalar(0.2F));
+  frame.axial.at<float>(5, 6) = -0.3F;  // behind the plane of the camera
+  const cv::Mat depth = Sensor({.noise = false}, 1).Depth(frame, 0);
+  EXPECT_EQ(depth.at<uint16_t>(7, 9), 2000);
+  EXPECT_EQ(depth.at<uint16_t>(5, 6), 0);
+  EXPECT_GT(cv::countNonZero(Sensor({}, 1).Depth(frame, 0)), 70000);
+}
+
 TEST(Sensor, DepthOutOfRangeOrGrazingIsUnknown) {
   for (const bool noise : {false, true}) {
     const Sensor sensor({.noise = noise}, 1);

@@ -5,17 +5,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 
+#include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 #include "results/true_object_file.h"
 #include "support/temporary_folder.h"
@@ -89,6 +92,20 @@ TEST_F(SequenceWriterTest, ImagesHaveTheRightFormats) {
             "# timestamp filename\n1000.000000 rgb/1000.000000.png\n"
             "1000.033333 rgb/1000.033333.png\n");
   EXPECT_EQ(Read(folder / "camera.yaml").substr(0, 9), "%YAML:1.0");
+}
+
+TEST_F(SequenceWriterTest, AFisheyeHasItsFieldOfViewAndItsSettings) {
+  const PinholeCamera camera = SyntheticFisheye(150.0);
+  EXPECT_NEAR(camera.Undistort({camera.cx + 320.0, camera.cy}).x() - camera.cx,
+              camera.fx * std::tan(75.0 * std::numbers::pi / 180.0), 1e-6);
+  const fs::path folder = Write("out", {.frames = 1, .fisheye = 150.0});
+  SettingsReport report;
+  const SystemOptions options = ReadSettings(folder / "camera.yaml", {}, report);
+  EXPECT_TRUE(options.camera.IsFisheye());
+  EXPECT_NEAR(options.camera.fx, camera.fx, 1e-6);
+  EXPECT_EQ(options.camera.k4, camera.k4);
+  EXPECT_NEAR(options.camera.bf / options.camera.fx, SyntheticCamera().bf / SyntheticCamera().fx,
+              1e-6);
 }
 
 TEST_F(SequenceWriterTest, GroundTruthIsThePathOfTheCamera) {

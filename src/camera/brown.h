@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "camera/lens_point.h"
+#include "hullslam/camera/pinhole.h"
+
+namespace hullslam {
+
+// LensModel::kBrown at a point of the plane z = 1.
+LensPoint DistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& point);
+
+// The point that DistortBrown() maps to `target`; at a fold the best point found.
+Eigen::Vector2d UndistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& target);
+
+// The distorted radius at which the radial factor folds; infinite if it does not before 89 degrees
+// from the axis.
+double FoldOfBrown(const PinholeCamera& camera);
+
+}  // namespace hullslam

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "camera/lens_fault.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "camera/kannala_brandt.h"
+
+namespace hullslam {
+namespace {
+
+// "Camera.k1 is '-5': ", for the coefficient that moves a raw pixel most.
+std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
+  const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
+  struct Term {
+    const char* key;
+    double coefficient;
+    double factor;
+  };
+  // k4 to k6 divide in Brown's model, and k4 is the fourth coefficient of a fisheye lens.
+  const std::array<Term, 8> terms = {
+      {{"Camera.k1", camera.k1, std::pow(r, 2)},
+       {"Camera.k2", camera.k2, std::pow(r, 4)},
+       {"Camera.k3", camera.k3, std::pow(r, 6)},
+       {"Camera.p1", camera.p1, r},
+       {"Camera.p2", camera.p2, r},
+       {"Camera.k4", camera.k4, std::pow(r, camera.IsFisheye() ? 8 : 2)},
+       {"Camera.k5", camera.k5, std::pow(r, 4)},
+       {"Camera.k6", camera.k6, std::pow(r, 6)}}};
+  const auto largest =
+      std::max_element(terms.begin(), terms.end(), [](const auto& a, const auto& b) {
+        return std::abs(a.coefficient) * a.factor < std::abs(b.coefficient) * b.factor;
+      });
+  return std::string(largest->key) + " is '" + PrintNumber(largest->coefficient) + "': ";
+}
+
+std::string DescribeFold(const PinholeCamera& camera) {
+  const double radius = camera.FoldRadius();
+  return std::isfinite(radius)
+             ? ", because it folds " + PrintNumber(radius) + " px from the principal point"
+             : std::string();
+}
+
+// A pixel of the image at which the distortion has no inverse.
+std::optional<Eigen::Vector2d> FindFold(const PinholeCamera& camera) {
+  constexpr int kSteps = 16;
+  constexpr double kMostError = 0.1;  // px
+  constexpr double kSmallestSlope = 1e-3;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const Eigen::Vector2d raw(static_cast<double>(camera.width) * j / kSteps,
+                                static_cast<double>(camera.height) * i / kSteps);
+      const Eigen::Vector2d p = camera.Undistort(raw);
+      // The comparisons are written so that a NaN is a fold.
+      const bool has_inverse = (camera.Distort(p) - raw).norm() <= kMostError &&
+                               camera.DistortionJacobian(p).determinant() >= kSmallestSlope;
+      if (!has_inverse) {
+        return raw;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string FindBrownFault(const PinholeCamera& camera) {
+  if (const std::optional<Eigen::Vector2d> fold = FindFold(camera)) {
+    return NameCoefficient(camera, *fold) + "the distortion cannot be undone at pixel (" +
+           PrintNumber(fold->x()) + ", " + PrintNumber(fold->y()) + ")" + DescribeFold(camera) +
+           ", expected the coefficients of a lens";
+  }
+  constexpr double kMostStretch = 4.0;
+  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
+  const double stretch_x = (bounds.max_x - bounds.min_x) / camera.width;
+  const double stretch_y = (bounds.max_y - bounds.min_y) / camera.height;
+  const Range range = Range::Between(1.0 / kMostStretch, kMostStretch);
+  if (!range.Contains(stretch_x) || !range.Contains(stretch_y)) {
+    return NameCoefficient(camera, Eigen::Vector2d::Zero()) + "the undistorted image would have " +
+           PrintNumber(stretch_x) + " times the width and " + PrintNumber(stretch_y) +
+           " times the height of the image, expected " + range.ToString();
+  }
+  return {};
+}
+
+std::string FindFisheyeFault(const PinholeCamera& camera) {
+  struct Other {
+    const char* key;
+    double coefficient;
+  };
+  const std::array<Other, 4> others = {{{"Camera.p1", camera.p1},
+                                        {"Camera.p2", camera.p2},
+                                        {"Camera.k5", camera.k5},
+                                        {"Camera.k6", camera.k6}}};
+  for (const Other& other : others) {
+    if (other.coefficient != 0.0) {
+      return std::string(other.key) + " is '" + PrintNumber(other.coefficient) +
+             "', expected 0: a fisheye lens (KannalaBrandt8) has only k1 to k4";
+    }
+  }
+  const double largest = LargestAngle(camera, PinholeCamera::kMostAngle);
+  const double radius = RadiusOfAngle(camera, largest);
+  for (const double x : {0.0, static_cast<double>(camera.width)}) {
+    for (const double y : {0.0, static_cast<double>(camera.height)}) {
+      const Eigen::Vector2d corner((x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy);
+      // The comparison is written so that a NaN is a fold.
+      if (largest < PinholeCamera::kMostAngle && !(corner.norm() < radius)) {
+        return NameCoefficient(camera, {x, y}) + "the distortion cannot be undone at pixel (" +
+               PrintNumber(x) + ", " + PrintNumber(y) + ")" + DescribeFold(camera) +
+               ", expected the coefficients of a fisheye lens";
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string PrintNumber(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string FindLensFault(const PinholeCamera& camera) {
+  return camera.IsFisheye() ? FindFisheyeFault(camera) : FindBrownFault(camera);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/features/feature_grid.h"
+
+namespace hullslam {
+
+// The grid of the keypoints of an image: in the undistorted image, whose bounds are given, or in
+// the raw image of a fisheye lens (Sensor::ToGrid).
+FeatureGrid MakeKeypointGrid(std::span<const Keypoint> keypoints, const PinholeCamera& camera,
+                             const PinholeCamera::Bounds& bounds);
+
+}  // namespace hullslam

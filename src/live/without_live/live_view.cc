@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "live/live_view.h"
+
+#include "util/components.h"
+
+namespace hullslam {
+namespace {
+
+void FailWithoutLive() { RequireComponent("LIVE", "a view in a browser is asked for"); }
+
+const std::string kNoUrl;
+
+}  // namespace
+
+// No object of these classes exists, because their constructors throw.
+struct PageServer::State {};
+class LiveView::Engine {};
+
+PageServer::PageServer(const ViewAddress&, std::string) { FailWithoutLive(); }
+PageServer::~PageServer() = default;
+const std::string& PageServer::url() const { return kNoUrl; }
+
+LiveView::LiveView(const ViewAddress&, LiveRun, LiveCommands, const LiveMapLimits&) {
+  FailWithoutLive();
+}
+LiveView::~LiveView() = default;
+const std::string& LiveView::url() const { return kNoUrl; }
+void LiveView::Show(LiveFrame) {}
+PauseGate::Clock::duration LiveView::PassGate(const std::function<bool()>&,
+                                              const std::function<void()>&) {
+  return {};
+}
+bool LiveView::IsLocalisationWanted() const { return false; }
+void LiveView::BeginFinishing() {}
+void LiveView::End(std::shared_ptr<const Map>, nlohmann::json) {}
+uint64_t LiveView::bytes_sent() const { return 0; }
+
+}  // namespace hullslam

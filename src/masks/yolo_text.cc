@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "masks/yolo_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+void AddShares(double x, double y, const cv::Size& image, std::string& text) {
+  fmt::format_to(std::back_inserter(text), " {:.6g} {:.6g}", std::clamp(x / image.width, 0.0, 1.0),
+                 std::clamp(y / image.height, 0.0, 1.0));
+}
+
+// The corners of a box are those of BoxOutline(): pixels with integer centres. The shares of a box
+// begin at the edge of the first pixel.
+void AddBox(const std::vector<Eigen::Vector2d>& corners, const cv::Size& image, std::string& text) {
+  const Eigen::Vector2d centre = 0.5 * (corners[0] + corners[2]);
+  const Eigen::Vector2d size = corners[2] - corners[0];
+  AddShares(centre.x() + 0.5, centre.y() + 0.5, image, text);
+  AddShares(size.x(), size.y(), image, text);
+}
+
+}  // namespace
+
+std::string YoloText(std::span<const InstanceMask> masks, const std::vector<std::string>& classes,
+                     const cv::Size& image) {
+  std::string text;
+  for (const InstanceMask& mask : masks) {
+    const auto found = std::ranges::find(classes, mask.label);
+    Check(found != classes.end() && !mask.outlines.empty(), "the mask has no class or no outline");
+    text += std::to_string(found - classes.begin());
+    if (mask.shape == MaskShape::kBox) {
+      AddBox(mask.outlines.front(), image, text);
+    } else {
+      for (const Eigen::Vector2d& point : mask.outlines.front()) {
+        AddShares(point.x(), point.y(), image, text);
+      }
+    }
+    fmt::format_to(std::back_inserter(text), " {:.4f}\n", mask.score);
+  }
+  return text;
+}
+
+}  // namespace hullslam

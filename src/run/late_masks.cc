@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/late_masks.h"
+
+#include <utility>
+
+#include "util/thread_priority.h"
+
+namespace hullslam {
+
+LateMasks::LateMasks(Pace pace, const NetworkMasks& network, System& system)
+    : pace_(pace), network_(network), system_(system) {
+  system_.AwaitMasks(true);
+  if (pace_ == Pace::kNeverWait) {
+    worker_ = std::make_unique<LatestWorker<Picture>>([this](const Picture& picture) {
+      RunInBackground();  // tracking comes first
+      Made made{picture.frame, network_.Make(picture.image)};
+      const std::lock_guard lock(mutex_);
+      made_ = std::move(made);
+    });
+  }
+}
+
+void LateMasks::AfterFrame(const TrackedFrame& frame, const cv::Mat& image) {
+  if (image.empty()) {
+    system_.AddMasks(frame.frame, {});  // if the network has found nothing
+    return;
+  }
+  if (pace_ == Pace::kWait) {
+    if (IsKeyframe(frame.frame)) {
+      system_.AddMasks(frame.frame, network_.Make(image));
+    }
+    return;
+  }
+  pictures_.push_back({frame.frame, frame.timestamp, image});
+  while (frame.timestamp - pictures_.front().timestamp > System::kMaskPatience) {
+    pictures_.pop_front();
+  }
+  AddMade();
+  if (!worker_->IsBusy()) {
+    BeginNext();
+  }
+}
+
+void LateMasks::Finish() {
+  if (worker_ != nullptr) {
+    worker_->WaitUntilIdle();
+    AddMade();
+  }
+}
+
+bool LateMasks::IsKeyframe(FrameId frame) const {
+  const auto map = system_.map();
+  if (map == nullptr) {
+    return false;
+  }
+  const auto keyframe = map->KeyframeOfFrame(frame);
+  return keyframe && map->keyframes().Contains(*keyframe);
+}
+
+void LateMasks::AddMade() {
+  worker_->RethrowFailure();
+  std::optional<Made> made;
+  {
+    const std::lock_guard lock(mutex_);
+    made = std::exchange(made_, std::nullopt);
+  }
+  if (made) {
+    system_.AddMasks(made->frame, std::move(made->masks));
+  }
+}
+
+void LateMasks::BeginNext() {
+  for (auto picture = pictures_.rbegin(); picture != pictures_.rend(); ++picture) {
+    if (IsKeyframe(picture->frame)) {
+      worker_->Post(std::move(*picture));
+      pictures_.erase(std::next(picture).base());
+      return;
+    }
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/bag_sequence.h"
+
+#include "util/components.h"
+
+namespace hullslam {
+
+BagSequence OpenBagSequence(const std::filesystem::path& path, const BagSequenceOptions&) {
+  RequireComponent("BAGS", path.string() + " is a recording");
+  return {};
+}
+
+}  // namespace hullslam

@@ -1,0 +1,34 @@
+# cmake -D BUILD_DIR=build/release -D WORK_DIR=... -P run_core.cmake
+# Installs hullslam::core alone into a new folder, builds and runs the consumer project against it, and
+# looks at what its program loads. The packages that only other components need are hidden from it.
+cmake_minimum_required(VERSION 3.23)
+
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+foreach(component core core_dev)
+  run(${CMAKE_COMMAND} --install ${BUILD_DIR} --component ${component} --prefix ${WORK_DIR}/prefix)
+endforeach()
+set(hidden "")
+foreach(package BZip2 JPEG PNG SQLite3 ZLIB nlohmann_json yaml-cpp)
+  list(APPEND hidden -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja -D CORE_ONLY=ON
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${hidden})
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
+run(${WORK_DIR}/build/consumer)
+
+execute_process(COMMAND ldd ${WORK_DIR}/build/consumer OUTPUT_VARIABLE loaded
+                COMMAND_ERROR_IS_FATAL ANY)
+foreach(library avformat bz2 jpeg lz4 opencv_dnn opencv_videoio png sqlite yaml-cpp zstd)
+  if(loaded MATCHES "lib${library}")
+    message(FATAL_ERROR "a program that uses hullslam::core loads ${library}: ${loaded}")
+  endif()
+endforeach()
+# Boost.Beast has headers only, so its names would be in the program.
+file(STRINGS ${WORK_DIR}/build/consumer beast REGEX "boost.*beast")
+if(beast)
+  message(FATAL_ERROR "a program that uses hullslam::core has Boost.Beast in it: ${beast}")
+endif()

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/comparison/start_oriented_box.h"
+
+#include <gtest/gtest.h>
+
+#include "objects/seen_by_ring.h"
+
+namespace hullslam {
+namespace {
+
+const MadeObject kBottle = MakeObject("bottle", {0.1, 0.0, 0.1}, {0.08, 0.12, 0.2}, 0.5);
+
+TEST(StartByOrientedBox, IsInTheBoxOfTheDepthPoints) {
+  const SeenByRing seen(kBottle, 8, 0.8);
+  const std::vector<ObjectView> views = seen.Views();
+  const StartOptions options{.trimmed = 0.0, .inflation = 1.0};
+  const std::vector<Ellipsoid> starts = StartByOrientedBox({.camera = seen.camera(),
+                                                            .views = views,
+                                                            .center = {0.1, 0.0, 0.1},
+                                                            .has_depth = true,
+                                                            .options = options});
+  ASSERT_EQ(starts.size(), 1u);
+  EXPECT_LT(
+      (starts[0].world_from_object.translation - kBottle.ellipsoid.world_from_object.translation)
+          .norm(),
+      0.02);
+  EXPECT_NEAR(starts[0].half_axes.maxCoeff(), 0.2, 0.03);
+  EXPECT_NEAR(starts[0].half_axes.minCoeff(), 0.08, 0.03);
+}
+
+TEST(StartByOrientedBox, WithoutDepthTakesLandmarks) {
+  const SeenByRing seen(kBottle, 4, 0.8);
+  std::vector<ObjectView> views = seen.Views();
+  std::vector<Detection> detections;
+  for (const ObjectView& view : views) {
+    detections.push_back(*view.detection);
+    detections.back().points.clear();
+  }
+  for (size_t i = 0; i < views.size(); ++i) {
+    views[i].landmarks = views[i].detection->points.Unpack();
+    views[i].detection = &detections[i];
+  }
+  const StartOptions options{.trimmed = 0.0, .inflation = 1.0};
+  const StartInput input{
+      .camera = seen.camera(), .views = views, .center = {0.1, 0.0, 0.1}, .options = options};
+  ASSERT_EQ(StartByOrientedBox(input).size(), 1u);
+  EXPECT_NEAR(StartByOrientedBox(input)[0].half_axes.maxCoeff(), 0.2, 0.03);
+  // Two landmarks that all views show are two, not eight.
+  const std::vector<Eigen::Vector3d> two = {{0.1, 0.0, 0.1}, {0.2, 0.05, 0.15}};
+  for (ObjectView& view : views) {
+    view.landmarks = {view.cam_from_world * two[0], view.cam_from_world * two[1]};
+  }
+  EXPECT_TRUE(StartByOrientedBox(input).empty());
+}
+
+}  // namespace
+}  // namespace hullslam

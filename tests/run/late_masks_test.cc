@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/late_masks.h"
+
+#include <gtest/gtest.h>
+
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
+#include "support/made_network.h"
+#include "support/plane_sequence.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+// A run whose images in colour show a red thing. The network sees them a fifth as large, so a cell
+// has 160 px.
+class LateMasksTest : public testing::Test {
+ protected:
+  LateMasksTest()
+      : sequence_(OpenTumSequence(plane_.path())),
+        options_(ReadSettings(plane_.path() / "camera.yaml")),
+        network_(folder_.Write("network.onnx", MadeNetwork().Bytes()), {}, 0, sequence_,
+                 options_.camera),
+        system_(options_, PipelineKind::kSequential) {
+    PaintBlob({180, 180, 120, 120}, true, colour_);
+  }
+
+  TrackedFrame Track(size_t frame) {
+    return system_.Track(LoadFrame(sequence_.frames.at(frame), options_.camera));
+  }
+
+  size_t DetectionsOfFirstKeyframe() const {
+    return system_.map()->keyframes().At(KeyframeId(0)).frame->detections.size();
+  }
+
+  const PlaneSequence plane_{4};
+  const TemporaryFolder folder_;
+  const ImageSequence sequence_;
+  const SystemOptions options_;
+  const NetworkMasks network_;
+  System system_;
+  cv::Mat colour_ = GreyImage(640, 480);
+};
+
+TEST_F(LateMasksTest, AKeyframeGetsThemAtOnceIfTheRunWaits) {
+  LateMasks masks(LateMasks::Pace::kWait, network_, system_);
+  masks.AfterFrame(Track(0), colour_);
+  EXPECT_EQ(DetectionsOfFirstKeyframe(), 1U);
+  masks.AfterFrame(Track(1), cv::Mat());  // its masks were made before
+  masks.Finish();
+  EXPECT_EQ(system_.object_counts().frames_with_masks, 1U);
+}
+
+TEST_F(LateMasksTest, AKeyframeGetsThemWhenTheyAreReadyInRealTime) {
+  LateMasks masks(LateMasks::Pace::kNeverWait, network_, system_);
+  masks.AfterFrame(Track(0), colour_);
+  EXPECT_EQ(DetectionsOfFirstKeyframe(), 0U);
+  masks.AfterFrame(Track(1), colour_);  // no keyframe
+  masks.Finish();
+  EXPECT_EQ(DetectionsOfFirstKeyframe(), 1U);
+  EXPECT_EQ(system_.object_counts().frames_with_masks, 1U);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/mask_arguments.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "files/read_file.h"
+#include "support/made_network.h"
+#include "support/plane_sequence.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+// Runs rgbd_tum with a network on a plane with a red thing, which moves by 5 px per frame. The
+// network sees the images a fifth as large, so a cell has 160 px, and the thing stays in one.
+class SegmentOption : public testing::Test {
+ protected:
+  SegmentOption() : network_(folder_.Write("network.onnx", MadeNetwork().Bytes())) {
+    for (int i = 0; i < kFrames; ++i) {
+      const std::string file = (plane_.path() / "rgb" / fmt::format("{:02}.png", i)).string();
+      cv::Mat image = cv::imread(file, cv::IMREAD_COLOR);
+      PaintBlob({250 - 5 * i, 190, 60, 100}, true, image);
+      cv::imwrite(file, image);
+    }
+  }
+
+  std::string Output(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  ProgramResult Run(const std::string& output, std::vector<std::string> more) const {
+    more.insert(more.begin(), {plane_.path().string(), "--quiet", "--output", Output(output)});
+    return RunProgram("rgbd_tum", more);
+  }
+
+  nlohmann::json Summary(const std::string& output) const {
+    return nlohmann::json::parse(ReadFile(Output(output) + "/summary.json"));
+  }
+
+  std::string Trajectory(const std::string& output) const {
+    return ReadFile(Output(output) + "/trajectory.txt");
+  }
+
+  static constexpr int kFrames = 12;
+  const PlaneSequence plane_{kFrames};
+  const TemporaryFolder folder_;
+  const std::filesystem::path network_;
+};
+
+TEST_F(SegmentOption, MakesTheMasksThatTheCommandSegmentWrites) {
+  const ProgramResult result = Run("a", {"--segment", network_.string()});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  ASSERT_EQ(Run("b", {"--segment", network_.string()}).exit_code, 0);
+  EXPECT_EQ(Trajectory("a"), Trajectory("b"));
+  EXPECT_EQ(ReadFile(Output("a") + "/objects.json"), ReadFile(Output("b") + "/objects.json"));
+  const ProgramResult made =
+      RunProgram("hullslam", {"segment", plane_.path().string(), "--network", network_.string(),
+                              "--output", Output("masks"), "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  ASSERT_EQ(Run("c", {"--masks", Output("masks")}).exit_code, 0);
+  EXPECT_EQ(Summary("a")["objects"]["detections"], kFrames);
+  EXPECT_EQ(Summary("a")["objects"]["detections"], Summary("c")["objects"]["detections"]);
+  EXPECT_EQ(Summary("a")["objects"]["count"], Summary("c")["objects"]["count"]);
+  EXPECT_EQ(Summary("a")["provenance"]["masks_format"], "network");
+}
+
+TEST_F(SegmentOption, KeyframesGetMasksIfOnlyEveryNthFrameIsAskedFor) {
+  const std::vector<std::string> arguments = {"--segment", network_.string(), "--segment-every",
+                                              "100"};
+  ASSERT_EQ(Run("a", arguments).exit_code, 0);
+  ASSERT_EQ(Run("b", arguments).exit_code, 0);
+  EXPECT_EQ(Trajectory("a"), Trajectory("b"));
+  EXPECT_EQ(Summary("a")["objects"]["detections"], Summary("a")["map"]["keyframes"]);
+}
+
+TEST_F(SegmentOption, MasksComeLaterInRealTime) {
+  const ProgramResult result = Run("a", {"--segment", network_.string(), "--realtime"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_GE(Summary("a")["objects"]["detections"], 1);
+}
+
+TEST_F(SegmentOption, BadUseIsRefusedBeforeAnythingIsWritten) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& fault) {
+    const ProgramResult result = Run("out", std::move(arguments));
+    EXPECT_EQ(result.exit_code, 2) << fault;
+    EXPECT_NE(result.errors.find(fault), std::string::npos) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(Output("out")));
+  };
+  refused({"--segment", folder_.Write("text.onnx", "layers: 3\n").string()},
+          "text.onnx: is a text");
+  refused({"--segment", network_.string(), "--masks", Output("masks")}, "--masks");
+  refused({"--segment-every", "3"}, "--segment");
+}
+
+}  // namespace
+}  // namespace hullslam

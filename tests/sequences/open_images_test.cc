@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/open_images.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The left images are red and the others blue.
+void WriteImage(const fs::path& file, bool is_red = true) {
+  fs::create_directories(file.parent_path());
+  cv::imwrite(file.string(),
+              cv::Mat(24, 32, CV_8UC3, is_red ? cv::Scalar(0, 0, 255) : cv::Scalar(255, 0, 0)));
+}
+
+std::string FirstStem(const ImageSequence& sequence) {
+  return sequence.frames.front().image.stem().string();
+}
+
+void ExpectRed(const ImageSequence& sequence) {
+  const cv::Mat image = ReadFrameColour(sequence, sequence.frames.front());
+  ASSERT_EQ(image.type(), CV_8UC3);
+  EXPECT_EQ(image.size(), cv::Size(32, 24));
+  const auto pixel = image.at<cv::Vec3b>(5, 5);
+  EXPECT_LT(pixel[0], 40);
+  EXPECT_GT(pixel[2], 200);
+}
+
+TEST(OpenImages, FoldersAreKnownByWhatIsInThem) {
+  const TemporaryFolder folder;
+  for (const char* const name :
+       {"tum/rgb/1.500000.png", "tum/rgb/1.600000.png", "photos/IMG_2.jpg", "photos/IMG_10.jpg",
+        "pairs/left/000001.png", "pairs/left/000002.png", "kitti/image_2/000000.png"}) {
+    WriteImage(folder.path() / name);
+  }
+  for (const char* const name :
+       {"pairs/right/000001.png", "pairs/right/000002.png", "kitti/image_3/000000.png"}) {
+    WriteImage(folder.path() / name, false);
+  }
+  folder.Write("kitti/times.txt", "0.0\n");
+  folder.Write("kitti/calib.txt",
+               "P2: 10 0 16 0 0 10 12 0 0 0 1 0\nP3: 10 0 16 -5 0 10 12 0 0 0 1 0\n");
+  for (const auto& [name, stem] : std::vector<std::pair<std::string, std::string>>{
+           {"tum", "1.500000"}, {"photos", "IMG_2"}, {"pairs", "000001"}, {"kitti", "000000"}}) {
+    const ImageSequence sequence = OpenImages(folder.path() / name);
+    EXPECT_EQ(FirstStem(sequence), stem);
+    ExpectRed(sequence);
+  }
+  ExpectInputError([&] { OpenImages(folder.path() / "none"); }, {"none"});
+}
+
+TEST(OpenImages, OfHalvesSideBySideTheLeftOneIsUsed) {
+  const TemporaryFolder folder;
+  cv::Mat both(24, 64, CV_8UC3, cv::Scalar(255, 0, 0));
+  both.colRange(0, 32).setTo(cv::Scalar(0, 0, 255));
+  cv::imwrite((folder.path() / "000001.png").string(), both);
+  ExpectRed(OpenImages(folder.path(), {.has_two_halves = true}));
+}
+
+TEST(OpenImages, AFileIsAVideoUnlessItsEndingSaysARecording) {
+  const TemporaryFolder folder;
+  const fs::path video = folder.path() / "walk.avi";
+  cv::VideoWriter writer(video.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10, {32, 24});
+  for (int i = 0; i < 3; ++i) {
+    writer.write(cv::Mat(24, 32, CV_8UC3, cv::Scalar(0, 0, 255)));
+  }
+  writer.release();
+  const ImageSequence sequence = OpenImages(video);
+  EXPECT_EQ(sequence.frames.size(), 3U);
+  EXPECT_EQ(FirstStem(sequence), "000000");
+  ExpectRed(sequence);
+  ExpectInputError([&] { OpenImages(folder.Write("a.bag", "no bag")); }, {"a.bag"});
+  ExpectInputError([&] { OpenImages(folder.Write("a.mp4", "no video")); }, {"a.mp4"});
+}
+
+TEST(OpenImages, SequencesOfStereoCamerasGiveTheirStoredLeftImages) {
+  const auto euroc = FindTestData("zed2_realtime_105");
+  if (!euroc) {
+    GTEST_SKIP() << "the sequence is not here";
+  }
+  const ImageSequence sequence = OpenImages(*euroc);
+  EXPECT_EQ(sequence.frames.size(), 105U);
+  EXPECT_EQ(ReadFrameColour(sequence, sequence.frames.front()).size(), cv::Size(672, 376));
+}
+
+}  // namespace
+}  // namespace hullslam
