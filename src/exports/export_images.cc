@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "camera/fit_depth.h"
 #include "frame/dynamic_mask.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
@@ -58,7 +59,9 @@ void WriteDepths(const std::vector<KeyframeImage>& images, const PinholeView& vi
     const ImageInput loaded = input.sequence->load(images[i].frame, input.map->sensor.camera);
     frames[i].depth = "depths/" + images[i].name + ".png";
     folder.Write(
-        {frames[i].depth, EncodeImage(MakeDepthImage(loaded.depth, *units, view), ".png")});
+        {frames[i].depth,
+         EncodeImage(MakeDepthImage(FitDepth(loaded.depth, loaded.grey.size()), *units, view),
+                     ".png")});
   }
 }
 

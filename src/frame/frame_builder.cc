@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "camera/fit_depth.h"
 #include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
 #include "frame/keypoint_grid.h"
@@ -152,7 +153,12 @@ FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
 }  // namespace
 
 void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera) {
-  CheckSize("depth image", depth, cv::Size(camera.width, camera.height));
+  if (!HaveSameShape(depth.size(), {camera.width, camera.height})) {
+    throw InputError(
+        fmt::format("the depth image is {}x{} px, expected the shape of the image, Camera.width x "
+                    "Camera.height, {}x{} px",
+                    depth.cols, depth.rows, camera.width, camera.height));
+  }
   if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
     throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
   }
@@ -181,8 +187,18 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
 }
 
 BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
-  using Clock = std::chrono::steady_clock;
   CheckImages(image, sensor_);
+  if (image.depth.empty() || image.depth.size() == image.grey.size()) {
+    return BuildFitted(image, runner, awaits_masks);
+  }
+  ImageInput fitted = image;
+  fitted.depth = FitDepth(image.depth, image.grey.size());
+  return BuildFitted(fitted, runner, awaits_masks);
+}
+
+BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner,
+                                     bool awaits_masks) {
+  using Clock = std::chrono::steady_clock;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   DetectionInput input;

@@ -21,8 +21,8 @@
 
 namespace hullslam {
 
-// Throws InputError unless the depth image has the size of the camera and a type that ImageInput
-// allows.
+// Throws InputError unless the depth image has the shape of the image of the camera and a type that
+// ImageInput allows.
 void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera);
 
 // Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
@@ -50,6 +50,8 @@ class FrameBuilder {
                      TaskRunner& runner, BuiltFrame& built);
 
  private:
+  // `image` has depth of its own size.
+  BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks);
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);

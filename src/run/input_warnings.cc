@@ -14,6 +14,7 @@
 #include <tuple>
 #include <vector>
 
+#include "camera/fit_depth.h"
 #include "eval/depth_registration.h"
 #include "eval/mask_registration.h"
 #include "frame/dynamic_mask.h"
@@ -48,6 +49,19 @@ void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
                fmt::join(classes, "', '"),
                labels.empty() ? std::string("there are no masks")
                               : fmt::format("classes of the masks: {}", fmt::join(labels, ", ")));
+  }
+}
+
+// The images of the run are rectified, and so are the masks, because they belong to the images as
+// read. Masks that fit the images only before that are those of other images. A rectification that
+// moves them by a pixel or two changes the contrast less.
+void RefuseMasksOfRectifiedImages(double as_given, double fitted) {
+  constexpr double kLeast = 1.5;  // as for turned images
+  if (as_given > kLeast * std::max(fitted, 1.0)) {
+    throw InputError(fmt::format(
+        "the masks fit the rectified left images (contrast {:.2f}) and not the left images as read "
+        "({:.2f}), expected masks of the images as read",
+        as_given, fitted));
   }
 }
 
@@ -87,7 +101,7 @@ void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera&
     try {
       const ImageInput image = sequence.load(sequence.frames[i], camera);
       if (!image.depth.empty()) {
-        registration.Add(image.grey, image.depth);
+        registration.Add(image.grey, FitDepth(image.depth, image.grey.size()));
       }
     } catch (const InputError&) {  // the run will report this image
       continue;
@@ -161,12 +175,18 @@ void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& ca
   constexpr double kLeastOfTurned = 1.5;
   constexpr double kLeast = 1.1;
   MaskRegistration registration;
+  MaskRegistration as_given;
   const size_t step = std::clamp<size_t>(sequence.frames.size() / kFrames, 1, kMostStep);
   for (size_t i = 0; i < std::min(sequence.frames.size(), kFrames * step); i += step) {
     try {
-      const std::vector<InstanceMask> found = read(i);
+      std::vector<InstanceMask> found = read(i);
       if (!found.empty()) {
-        registration.Add(sequence.load(sequence.frames[i], camera).grey, found);
+        const cv::Mat grey = sequence.load(sequence.frames[i], camera).grey;
+        if (sequence.fit_mask != nullptr) {
+          as_given.Add(grey, found);
+          std::ranges::for_each(found, sequence.fit_mask);
+        }
+        registration.Add(grey, found);
       }
     } catch (const InputError&) {  // the program will report it
       continue;
@@ -176,6 +196,9 @@ void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& ca
     return;
   }
   const double contrast = registration.Contrast(1);
+  if (sequence.fit_mask != nullptr) {
+    RefuseMasksOfRectifiedImages(as_given.Contrast(1), contrast);
+  }
   int best = 1;
   for (int orientation = 2; orientation <= 8; ++orientation) {
     if (registration.Contrast(orientation) > registration.Contrast(best)) {

@@ -38,7 +38,8 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
 // Warns if the outlines of masks do not run along borders in the images (MaskRegistration): they
 // may be masks of the images as EXIF data turn them. Uses seven images of the beginning. Prints
 // nothing if there are too few contours.
-// `read` gives the masks of the frame with an index.
+// `read` gives the masks of the frame with an index. Throws InputError for masks that belong to the
+// rectified images of a stereo camera and not to the images as read.
 void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& camera,
                           const std::function<std::vector<InstanceMask>(size_t)>& read);
 // Warns if --last is beyond the end of the sequence.

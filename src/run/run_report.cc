@@ -153,10 +153,12 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
   const TrajectorySummary& trajectory = summary.trajectory;
   Print("{}: {} tracked, {} lost, {} skipped", Counted(trajectory.frames, "frame"),
         trajectory.tracked, trajectory.lost, trajectory.skipped);
-  if (!summary.initialisation) {  // RGB-D, or a loaded map
-    Print("{}\n", arguments.sensor == SensorKind::kMonocular
-                      ? std::string()
-                      : fmt::format("; {} without depth", Counted(trajectory.unpaired, "image")));
+  if (!summary.initialisation) {  // with depth, or a loaded map
+    const char* const lacking = arguments.sensor == SensorKind::kStereo ? "a partner" : "depth";
+    Print("{}\n",
+          arguments.sensor == SensorKind::kMonocular
+              ? std::string()
+              : fmt::format("; {} without {}", Counted(trajectory.unpaired, "image"), lacking));
   } else if (summary.initialisation->seconds) {
     Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
   } else {

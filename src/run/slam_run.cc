@@ -244,6 +244,13 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
 }
 
+// The width of a pixel of the depth image in pixels of the colour image; 0 without depth. A depth
+// may be taken from half of its pixel beside the keypoint, and the disparity of a depth camera is
+// known to a part of a pixel of its own.
+double DepthPixel(const ImageInput& image) {
+  return image.depth.empty() ? 0.0 : static_cast<double>(image.grey.cols) / image.depth.cols;
+}
+
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -254,6 +261,14 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
   const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
+  if (const double ratio = DepthPixel(first); ratio > 1.0) {
+    options.depth.error.disparity_sigma *= ratio;
+    PrintError(
+        "the depth images of {}x{} px are fitted to the images of {}x{} px; "
+        "depth.disparity_sigma becomes {:g}\n",
+        first.depth.cols, first.depth.rows, first.grey.cols, first.grey.rows,
+        options.depth.error.disparity_sigma);
+  }
   const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
   const SequenceMasks masks = OpenRunMasks(arguments, sequence, options.camera);
   CatchInterrupts();

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "bags/bag.h"
+#include "camera/fit_depth.h"
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/stamp_pairing.h"
@@ -199,7 +201,9 @@ class BagLoader {
     ImageInput image{frame.timestamp, Read(colour_, colour, Decoding::kGrey, name), cv::Mat()};
     if (!frame.depth.empty()) {
       image.depth = Read(depth_, depth, Decoding::kDepth, frame.depth.string());
-      CheckImageSize(frame.depth.string(), image.depth, camera);
+      if (!HaveSameShape(image.depth.size(), {camera.width, camera.height})) {
+        CheckImageSize(frame.depth.string(), image.depth, camera);
+      }
       if (image.depth.depth() == CV_32F && float_units_ != 1.0) {
         image.depth /= float_units_;
       }
@@ -473,6 +477,7 @@ BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
                        {ShowText(topics[1]->name), of_right}, rate, opened.warnings);
   const auto loader =
       std::make_shared<BagLoader>(std::move(bags), std::move(both[0]), std::move(both[1]), 1.0);
+  pairs.images.unpaired = of_left.size() - paired.size();
   for (const IndexPair& pair : paired) {
     loader->AddPair(path, pair.first, pair.second, pairs.images);
   }

@@ -89,21 +89,20 @@ std::vector<double> StampsOf(const std::vector<FramePaths>& frames) {
   return stamps;
 }
 
-std::vector<FramePaths> PairImages(const fs::path& root, double frames_per_second,
-                                   std::vector<std::string>& warnings) {
-  const std::vector<FramePaths> left = ReadImages(root / "cam0", warnings);
-  const std::vector<FramePaths> right = ReadImages(root / "cam1", warnings);
-  std::vector<FramePaths> pairs;
+void PairImages(const fs::path& root, double frames_per_second, ImageSequence& sequence) {
+  const std::vector<FramePaths> left = ReadImages(root / "cam0", sequence.warnings);
+  const std::vector<FramePaths> right = ReadImages(root / "cam1", sequence.warnings);
+  std::vector<FramePaths>& pairs = sequence.frames;
   for (const IndexPair& pair :
        PairStereoStamps(root.string(), {"cam0", StampsOf(left)}, {"cam1", StampsOf(right)},
-                        frames_per_second, warnings)) {
+                        frames_per_second, sequence.warnings)) {
     pairs.push_back(left[pair.first]);
     pairs.back().right = right[pair.second].image;
   }
   for (size_t i = 0; i < pairs.size(); ++i) {
     pairs[i].number = i;
   }
-  return pairs;
+  sequence.unpaired = left.size() - pairs.size();
 }
 
 // Adds the ground truth of the camera, if there is one.
@@ -167,8 +166,7 @@ StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& sele
   StereoSequence sequence{.images = {}, .calibration = left.calibration};
   sequence.images.dataset = "euroc_stereo";
   sequence.calibration.camera = rectifier->camera();
-  sequence.images.frames =
-      PairImages(root, left.calibration.frames_per_second, sequence.images.warnings);
+  PairImages(root, left.calibration.frames_per_second, sequence.images);
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
   LoadPairs(rectifier, sequence.images);

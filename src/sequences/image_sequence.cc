@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "camera/fit_depth.h"
 #include "hullslam/util/error.h"
 #include "results/pose_file.h"
 #include "sequences/image_file.h"
@@ -37,8 +38,8 @@ void TakeFrames(const ImageSequence& sequence, PoseFile& file) {
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   ImageInput image{frame.timestamp, ReadGreyImage(frame.image),
                    frame.depth.empty() ? cv::Mat() : ReadDepthImage(frame.depth)};
-  if (!frame.depth.empty() && image.grey.size() != image.depth.size()) {
-    throw InputError(fmt::format("{}: {}x{} px, expected the size of its colour image {}, {}x{}",
+  if (!frame.depth.empty() && !HaveSameShape(image.depth.size(), image.grey.size())) {
+    throw InputError(fmt::format("{}: {}x{} px, expected the shape of its colour image {}, {}x{}",
                                  frame.depth.string(), image.depth.cols, image.depth.rows,
                                  frame.image.filename().string(), image.grey.cols,
                                  image.grey.rows));

@@ -25,8 +25,13 @@ ImageInput Rectify(const Rectifier& rectifier, double timestamp, const cv::Mat& 
   return pair;
 }
 
+// Masks are moved into the rectified left image. Poses are those of its camera, so the rotation of
+// that is kept for those who need poses of the camera as read.
 void FitMasks(const Rectifier& rectifier, ImageSequence& sequence) {
   if (rectifier != nullptr) {
+    const Eigen::Quaterniond& q = rectifier->rectified_from_left().rotation;
+    sequence.choices["rectified_from_left"] =
+        fmt::format("{:.9f} {:.9f} {:.9f} {:.9f}", q.x(), q.y(), q.z(), q.w());
     sequence.fit_mask = [rectifier](InstanceMask& mask) { rectifier->Rectify(mask); };
   }
 }

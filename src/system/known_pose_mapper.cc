@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "camera/fit_depth.h"
 #include "frame/dynamic_mask.h"
 #include "frame/frame_builder.h"
 #include "frame/frame_detector.h"
@@ -37,16 +38,17 @@ KnownPoseMapper::KnownPoseMapper(const SystemOptions& options)
 KnownPoseMapper::~KnownPoseMapper() = default;
 
 void KnownPoseMapper::AddView(double timestamp, const Rigid3& world_from_cam,
-                              std::vector<InstanceMask> masks, const cv::Mat& depth) {
+                              std::vector<InstanceMask> masks, const cv::Mat& given_depth) {
   State& state = *state_;
   Check(std::isfinite(timestamp), "the time stamp is not a number");
   Check(world_from_cam.translation.allFinite() && world_from_cam.rotation.coeffs().allFinite(),
         "the pose is not finite");
   const PinholeCamera& camera = state.sensor.camera;
   ValidateMasks(masks, camera.width, camera.height);
-  if (!depth.empty()) {
-    CheckDepthImage(depth, camera);
+  if (!given_depth.empty()) {
+    CheckDepthImage(given_depth, camera);
   }
+  const cv::Mat depth = FitDepth(given_depth, {camera.width, camera.height});
   SerialRunner runner;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = {}};
   built.frame->id = FrameId(state.map.keyframes().NextId().value);

@@ -373,10 +373,20 @@ TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {
   image.grey = image.grey(cv::Rect(0, 0, kWidth - 1, kHeight));
   ExpectInputError([&] { Build(image); }, {"319x240", "320x240"});
   image = MakeImage();
-  image.depth = image.depth(cv::Rect(0, 0, kWidth, kHeight - 1));
-  ExpectInputError([&] { Build(image); }, {"depth", "320x239", "320x240"});
+  image.depth = image.depth(cv::Rect(0, 0, kWidth, kHeight - 4));
+  ExpectInputError([&] { Build(image); }, {"depth", "320x236", "expected the shape", "320x240"});
   image.depth = cv::Mat();
   EXPECT_THROW(Build(image), InputError);
+}
+
+TEST_F(FrameBuilderTest, DepthOfAnotherSizeIsFitted) {
+  ImageInput image = MakeImage();
+  image.depth = cv::Mat(kHeight / 4, kWidth / 4, CV_16UC1, cv::Scalar(10000));
+  const auto frame = Build(image);
+  ASSERT_GT(frame->features.size(), 100u);
+  EXPECT_EQ(std::ranges::count(frame->features.depth, 2.0F),
+            static_cast<std::ptrdiff_t>(frame->features.size()));
+  EXPECT_EQ(frame->depth.columns(), DepthGrid::CountAlong(kWidth));
 }
 
 TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {

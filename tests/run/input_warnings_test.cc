@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 
 #include "hullslam/masks/mask_source.h"
+#include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -29,18 +32,26 @@ ImageSequence MadeSequence() {
 }
 
 // What is printed for masks that all are a rectangle of class 41 with these corners, in shares.
-std::string WarningOf(double x0, double y0, double x1, double y1) {
+// `fit_mask` moves them from the images as read to the rectified ones.
+std::string WarningOf(double x0, double y0, double x1, double y1,
+                      std::function<void(InstanceMask&)> fit_mask = nullptr) {
   const TemporaryFolder folder;
   const auto text = [](double value) { return " " + std::to_string(value); };
   for (int i = 0; i < 7; ++i) {
     folder.Write(std::to_string(i) + ".txt", "41" + text(x0) + text(y0) + text(x1) + text(y0) +
                                                  text(x1) + text(y1) + text(x0) + text(y1) + "\n");
   }
-  const ImageSequence sequence = MadeSequence();
+  ImageSequence sequence = MadeSequence();
+  sequence.fit_mask = std::move(fit_mask);
   const SequenceMasks masks({folder.path(), "yolo-seg", 640, 480}, MaskFrames(sequence));
   testing::internal::CaptureStderr();
-  WarnOfMisplacedMasks(sequence, {.width = 640, .height = 480},
-                       [&](size_t frame) { return masks.Read(frame); });
+  try {
+    WarnOfMisplacedMasks(sequence, {.width = 640, .height = 480},
+                         [&](size_t frame) { return masks.Read(frame); });
+  } catch (...) {
+    testing::internal::GetCapturedStderr();
+    throw;
+  }
   return testing::internal::GetCapturedStderr();
 }
 
@@ -49,6 +60,18 @@ TEST(InputWarningsTest, MasksThatFitTheTurnedImagesAreNoticed) {
   // The pixel (x, y) is at (479 - y, x) in the image that is turned clockwise.
   const std::string turned = WarningOf(320.0 / 480, 100.0 / 640, 420.0 / 480, 300.0 / 640);
   EXPECT_NE(turned.find("the EXIF orientation 6."), std::string::npos) << turned;
+}
+
+// Rectification moves the images by 40 px to the right.
+TEST(InputWarningsTest, MasksOfRectifiedImagesAreRefused) {
+  const auto move = [](InstanceMask& mask) {
+    for (Eigen::Vector2d& point : mask.outlines.front()) {
+      point.x() += 40.0;
+    }
+  };
+  EXPECT_EQ(WarningOf(60.0 / 640, 60.0 / 480, 260.0 / 640, 160.0 / 480, move), "");
+  ExpectInputError([&] { WarningOf(100.0 / 640, 60.0 / 480, 300.0 / 640, 160.0 / 480, move); },
+                   {"fit the rectified left images", "expected masks of the images as read"});
 }
 
 TEST(InputWarningsTest, MasksOfOtherImagesAreNoticed) {

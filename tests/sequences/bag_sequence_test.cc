@@ -291,6 +291,7 @@ TEST_F(BagPairsTest, TwoTopicsArePairedByTheirStamps) {
   EXPECT_TRUE(pair.depth.empty());
   ASSERT_EQ(bag.warnings.size(), 1u);
   EXPECT_NE(bag.warnings[0].find("1 of 4 images of /left/image"), std::string::npos);
+  EXPECT_EQ(bag.images.unpaired, 1u);
   EXPECT_EQ(bag.images.choices.at("right_topic"), "/right/image");
 }
 

@@ -42,9 +42,10 @@ TEST_F(LoadFrameTest, DecodesBothImages) {
 TEST_F(LoadFrameTest, ImagesMustHaveTheSizeOfTheCamera) {
   ExpectInputError(
       [&] {
-        Load({64, 48}, {32, 24});
+        Load({64, 48}, {32, 18});
       },
-      {"depth.png: 32x24 px", "colour image rgb.png, 64x48"});
+      {"depth.png: 32x18 px", "expected the shape of its colour image rgb.png, 64x48"});
+  EXPECT_EQ(Load({64, 48}, {32, 24}).depth.size(), cv::Size(32, 24)) << "as read";
   ExpectInputError(
       [&] {
         Load({32, 24}, {32, 24});

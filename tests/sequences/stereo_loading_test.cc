@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -34,6 +35,13 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
   EXPECT_GT(cv::norm(pair.grey), 0.0);
   EXPECT_LT(cv::norm(pair.grey, pair.right, cv::NORM_INF), 3.0) << "the lines are in equal rows";
   EXPECT_EQ(sequence.load_colour(frame).type(), CV_8UC3);
+  const Eigen::Quaterniond& q = rectifier->rectified_from_left().rotation;
+  std::istringstream rotation(sequence.choices.at("rectified_from_left"));
+  for (const double expected : {q.x(), q.y(), q.z(), q.w()}) {
+    double number = 0.0;
+    rotation >> number;
+    EXPECT_NEAR(number, expected, 1e-9);
+  }
   InstanceMask mask;
   mask.outlines = {{{40.0, 20.0}, {50.0, 20.0}, {50.0, 25.0}}};
   sequence.fit_mask(mask);
@@ -51,6 +59,7 @@ TEST(StereoLoading, RectifiedPairsNeedNothing) {
   LoadPairs(nullptr, sequence);
   EXPECT_EQ(sequence.fit_mask, nullptr);
   EXPECT_EQ(sequence.load_colour, nullptr);
+  EXPECT_TRUE(sequence.choices.empty());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// One input frame; depth is registered to the colour image.
+// One input frame; depth is registered to the colour image and has its shape, maybe not its size.
 struct ImageInput {
   double timestamp = 0.0;  // seconds
   cv::Mat grey;            // CV_8UC1

@@ -44,7 +44,7 @@ using ColourLoader = std::function<cv::Mat(const FramePaths& frame)>;
 struct ImageSequence {
   std::vector<FramePaths> frames;  // the selected frames, in order of time
   size_t available = 0;  // frames of the whole sequence, of which `frames` is the selection
-  size_t unpaired = 0;   // colour images of the whole sequence that have no depth image
+  size_t unpaired = 0;   // images of the whole sequence without a depth or a right image
   // The file with the true trajectory. Absent if there is none, or if its stamps or poses must be
   // converted before they can be compared with those of a run.
   std::optional<std::filesystem::path> groundtruth;

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "camera/fit_depth.h"
 #include "frame/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/tum_sequence.h"
@@ -161,7 +162,8 @@ void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& optio
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
     counts.without_area += frame.without_area;
     counts.crowds += frame.crowds;
-    const cv::Mat depth = paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth);
+    const cv::Mat depth = FitDepth(paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth),
+                                   {options.camera.width, options.camera.height});
     const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
                                    options.objects.detection);
     const DetectionResult result = builder.Build(frame.masks, depth, {});
