@@ -4,16 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cstdlib>
 
 #include "hullslam/util/check.h"
 
 namespace hullslam {
 namespace {
 
+std::string ShareText(double coordinate, int size) {
+  return fmt::format("{:.6g}", std::clamp(coordinate / size, 0.0, 1.0));
+}
+
+std::string ScoreText(double score) { return fmt::format("{:.4f}", score); }
+
 void AddShares(double x, double y, const cv::Size& image, std::string& text) {
-  fmt::format_to(std::back_inserter(text), " {:.6g} {:.6g}", std::clamp(x / image.width, 0.0, 1.0),
-                 std::clamp(y / image.height, 0.0, 1.0));
+  text += ' ' + ShareText(x, image.width) + ' ' + ShareText(y, image.height);
 }
 
 // The corners of a box are those of BoxOutline(): pixels with integer centres. The shares of a box
@@ -41,9 +46,19 @@ std::string YoloText(std::span<const InstanceMask> masks, const std::vector<std:
         AddShares(point.x(), point.y(), image, text);
       }
     }
-    fmt::format_to(std::back_inserter(text), " {:.4f}\n", mask.score);
+    text += ' ' + ScoreText(mask.score) + '\n';
   }
   return text;
+}
+
+void RoundAsYoloText(const cv::Size& image, std::vector<InstanceMask>& masks) {
+  for (InstanceMask& mask : masks) {
+    mask.score = std::strtod(ScoreText(mask.score).c_str(), nullptr);
+    for (Eigen::Vector2d& point : mask.outlines.front()) {
+      point.x() = std::strtod(ShareText(point.x(), image.width).c_str(), nullptr) * image.width;
+      point.y() = std::strtod(ShareText(point.y(), image.height).c_str(), nullptr) * image.height;
+    }
+  }
 }
 
 }  // namespace hullslam

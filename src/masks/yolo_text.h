@@ -17,4 +17,8 @@ namespace hullslam {
 std::string YoloText(std::span<const InstanceMask> masks, const std::vector<std::string>& classes,
                      const cv::Size& image);
 
+// The outlines and scores that a reader of this file has, of masks that are no boxes. A run with
+// masks from a network rounds them so, and then has the bits of a run with masks from files.
+void RoundAsYoloText(const cv::Size& image, std::vector<InstanceMask>& masks);
+
 }  // namespace hullslam

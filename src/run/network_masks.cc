@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "hullslam/util/check.h"
+#include "masks/yolo_text.h"
 #include "sequences/frame_colour.h"
 
 namespace hullslam {
@@ -29,7 +30,9 @@ cv::Mat NetworkMasks::LoadImage(size_t frame) const {
 
 std::vector<InstanceMask> NetworkMasks::Make(const cv::Mat& image) const {
   const std::lock_guard lock(mutex_);
-  return segmenter_.Segment(image);
+  std::vector<InstanceMask> masks = segmenter_.Segment(image);
+  RoundAsYoloText(image.size(), masks);
+  return masks;
 }
 
 }  // namespace hullslam
