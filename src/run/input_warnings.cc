@@ -58,10 +58,11 @@ void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
 void RefuseMasksOfRectifiedImages(double as_given, double fitted) {
   constexpr double kLeast = 1.5;  // as for turned images
   if (as_given > kLeast * std::max(fitted, 1.0)) {
-    throw InputError(fmt::format(
-        "the masks fit the rectified left images (contrast {:.2f}) and not the left images as read "
-        "({:.2f}), expected masks of the images as read",
-        as_given, fitted));
+    throw InputError(
+        fmt::format("the masks fit the rectified or resized images (contrast {:.2f}) and not the "
+                    "images as read "
+                    "({:.2f}), expected masks of the images as read",
+                    as_given, fitted));
   }
 }
 

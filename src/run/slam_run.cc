@@ -209,13 +209,7 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
   if (masks.network() == nullptr) {
-    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) {
-      std::vector<InstanceMask> found = masks.Read(frame);
-      if (sequence.fit_mask != nullptr) {
-        std::ranges::for_each(found, sequence.fit_mask);
-      }
-      return found;
-    });
+    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
   }
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);

@@ -71,7 +71,7 @@ TEST(InputWarningsTest, MasksOfRectifiedImagesAreRefused) {
   };
   EXPECT_EQ(WarningOf(60.0 / 640, 60.0 / 480, 260.0 / 640, 160.0 / 480, move), "");
   ExpectInputError([&] { WarningOf(100.0 / 640, 60.0 / 480, 300.0 / 640, 160.0 / 480, move); },
-                   {"fit the rectified left images", "expected masks of the images as read"});
+                   {"fit the rectified or resized images", "expected masks of the images as read"});
 }
 
 TEST(InputWarningsTest, MasksOfOtherImagesAreNoticed) {

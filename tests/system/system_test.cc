@@ -591,8 +591,8 @@ TEST(System, ImagesOfAnotherTypeOrSizeAreRefused) {
   EXPECT_THROW(system.Track(1.0, image, cv::Mat()), InputError);
   ExpectInputError([&] { system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth); },
                    {"320x240", "640x480", "Camera.width"});
-  ExpectInputError([&] { system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))); },
-                   {"depth", "320x240", "640x480"});
+  ExpectInputError([&] { system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 200))); },
+                   {"depth", "320x200", "640x480"});
   EXPECT_TRUE(system.frames().empty());
   EXPECT_EQ(system.Track(1.0, image, depth).state, TrackingState::kTracked);
 }
