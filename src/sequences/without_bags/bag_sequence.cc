@@ -10,4 +10,10 @@ BagSequence OpenBagSequence(const std::filesystem::path& path, const BagSequence
   return {};
 }
 
+BagPairs OpenBagPairs(const std::filesystem::path& path, const BagSequenceOptions&,
+                      std::shared_ptr<const StereoRectifier>) {
+  RequireComponent("BAGS", path.string() + " is a recording");
+  return {};
+}
+
 }  // namespace hullslam
