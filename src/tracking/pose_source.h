@@ -25,8 +25,8 @@ PoseSource PoseByMotionModel;
 
 // Keypoints are compared with those of the last frame's reference keyframe, whatever their
 // positions in the image: with those of the same node of the vocabulary or, without words, with
-// all. The refinement begins at the last frame's pose and, if less than half of the matches agree with
-// its result, also at the pose that RANSAC finds (reference_keyframe_source.cc).
+// all. The refinement begins at the last frame's pose and, if less than half of the matches agree
+// with its result, also at the pose that RANSAC finds (reference_keyframe_source.cc).
 PoseSource PoseByReferenceKeyframe;
 
 // Keyframes that look like the frame by their words give matches with their landmarks, from which
