@@ -13,7 +13,6 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
-#include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
 #include "settings/stereo_settings.h"
 #include "util/shown_text.h"
@@ -80,27 +79,19 @@ ImageSequence OpenBag(const Reopening& opening) {
 
 ImageSequence OpenVideo(const Reopening& opening) { return OpenImageStream(opening.path).images; }
 
-ImageSequence OpenVslamlab(const Reopening& opening) {
-  return OpenVslamlabSequence(opening.path, opening.path / opening.Choice("rgb_csv"),
-                              opening.Choice("image_name"),
-                              opening.use_depth ? opening.Choice("depth_name") : "")
-      .images;
-}
-
 struct NamedDataset {
   const char* name;  // ImageSequence::dataset
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
+constexpr std::array<NamedDataset, 8> kDatasets = {{{"tum", OpenTum},
                                                     {"icl", OpenIcl},
                                                     {"euroc", OpenEuroc},
                                                     {"euroc_stereo", OpenEurocStereo},
                                                     {"kitti", OpenKitti},
                                                     {"stereo_folder", OpenPairs},
                                                     {"bag", OpenBag},
-                                                    {"video", OpenVideo},
-                                                    {"vslamlab", OpenVslamlab}}};
+                                                    {"video", OpenVideo}}};
 
 }  // namespace
 

@@ -177,16 +177,4 @@ YamlMap YamlMap::Map(std::string_view key) const {
   return {*this, key, node};
 }
 
-std::vector<YamlMap> YamlMap::Maps(std::string_view key) const {
-  const YAML::Node node = Find(key);
-  std::vector<YamlMap> maps;
-  for (const YAML::Node& element : node) {
-    if (!node.IsSequence() || !element.IsMap()) {
-      Fail(key, "is not a list of maps");
-    }
-    maps.push_back(YamlMap(*this, key, element));
-  }
-  return maps;
-}
-
 }  // namespace hullslam
