@@ -79,16 +79,15 @@ TEST_F(FinishedRunTest, WhatARunDidNotHaveIsEmpty) {
 
 TEST_F(FinishedRunTest, ARunWithoutADataSetIsThatOfItsProgram) {
   const std::map<std::string, std::string> datasets = {
-      {"rgbd_tum", "tum"},     {"map_objects", "tum"},        {"mono_icl", "icl"},
-      {"mono_euroc", "euroc"}, {"mono_video", "video"},       {"rgbd_bag", "bag"},
-      {"other", ""},           {"vslamlab_hullslam_mono", ""}};
+      {"rgbd_tum", "tum"},     {"map_objects", "tum"}, {"mono_icl", "icl"}, {"mono_euroc", "euroc"},
+      {"mono_video", "video"}, {"rgbd_bag", "bag"},    {"other", ""}};
   for (const auto& [program, dataset] : datasets) {
     summary_.provenance.program = program;
     summary_.provenance.dataset = std::nullopt;
     EXPECT_EQ(Open().sequence.dataset, dataset) << program;
   }
-  summary_.provenance.dataset = "vslamlab";
-  EXPECT_EQ(Open().sequence.dataset, "vslamlab");
+  summary_.provenance.dataset = "kitti";
+  EXPECT_EQ(Open().sequence.dataset, "kitti");
 }
 
 TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {

@@ -55,7 +55,7 @@ struct ImageSequence {
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
-  // The kind of data set: "tum", "icl", "euroc", "bag", "video" or "vslamlab"; and what was chosen
+  // The kind of data set: "tum", "icl", "euroc", "bag", "video", "kitti", ...; and what was chosen
   // among several possibilities, such as "image_topic". OpenRunSequence() needs both to open the
   // same images again.
   std::string dataset = {};
