@@ -80,10 +80,9 @@ FrameReport Track(LiveSystem& system, const py::object& image, const py::object&
                   const MaskList* masks, const py::object& right, double timestamp) {
   const PinholeCamera& camera = system.options().camera;
   const cv::Size size(camera.width, camera.height);
-  const PixelView pixels = ViewImage(image, "the image", size);
-  const PixelView depths = ViewDepth(depth, size);
-  const PixelView rights =
-      right.is_none() ? PixelView() : ViewImage(right, "the right image", size);
+  const PixelSpan pixels = ImageOf(image, "the image", size);
+  const PixelSpan depths = SpanOfDepth(depth, size);
+  const PixelSpan rights = right.is_none() ? PixelSpan() : ImageOf(right, "the right image", size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
   return WithoutGil([&] {
     return system.Track(timestamp, pixels.image, {depths.image, rights.image},

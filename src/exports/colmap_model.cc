@@ -19,8 +19,8 @@ constexpr double kHalfPixel = 0.5;  // COLMAP's pixels minus ours
 // The index of the keypoint of each landmark in an image.
 using LandmarkKeypoints = std::unordered_map<LandmarkId, uint32_t>;
 
-ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe, const PinholeView& view,
-                      LandmarkKeypoints& landmarks) {
+ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe,
+                      const ExportCamera& view, LandmarkKeypoints& landmarks) {
   ColmapImage made{image.keyframe.value + 1, image.name + ".png", keyframe.cam_from_world, {}};
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const Eigen::Vector2d pixel =
@@ -75,7 +75,7 @@ void AddPoint(const Eigen::Vector3d& position, const Colour& colour, std::vector
 
 ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
                             std::span<const Colour> colours, std::span<const KeyframeImage> images,
-                            const PinholeView& view) {
+                            const ExportCamera& view) {
   ColmapModel model{view.camera(), {}, {}};
   model.camera.cx += kHalfPixel;
   model.camera.cy += kHalfPixel;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "exports/export_camera.h"
 #include "exports/keyframe_images.h"
-#include "exports/pinhole_view.h"
 #include "hullslam/map/map.h"
 #include "map/located_landmarks.h"
 #include "results/output_folder.h"
@@ -57,7 +57,7 @@ struct ColmapModel {
 // entry per landmark of `located`.
 ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
                             std::span<const Colour> colours, std::span<const KeyframeImage> images,
-                            const PinholeView& view);
+                            const ExportCamera& view);
 
 // cameras.txt, images.txt and points3D.txt.
 std::vector<FileContent> FormatColmapText(const ColmapModel& model);

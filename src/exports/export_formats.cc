@@ -21,7 +21,7 @@ namespace {
 
 std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
   const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
+  const ExportCamera view(input.map->sensor.camera);
   ExportFolder folder(options.output);
   WriteImages(images, view, input, folder);
   std::vector<Colour> colours;
@@ -42,7 +42,7 @@ std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
 std::string WriteNerfstudio(const ExportOptions& options, ExportInput& input) {
   constexpr const char* kPointsFile = "points.ply";
   const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
+  const ExportCamera view(input.map->sensor.camera);
   ExportFolder folder(options.output);
   WriteImages(images, view, input, folder);
   const std::vector<NerfstudioFrame> frames =

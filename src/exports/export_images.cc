@@ -42,7 +42,7 @@ std::optional<double> FindDepthUnits(const std::vector<KeyframeImage>& images,
   return std::nullopt;
 }
 
-void WriteDepths(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteDepths(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder, std::vector<NerfstudioFrame>& frames) {
   const auto has_depth = [](const KeyframeImage& image) { return !image.frame.depth.empty(); };
   if (input.map->sensor.IsMonocular()) {
@@ -80,7 +80,7 @@ std::vector<cv::Mat> LoadMasks(const std::vector<KeyframeImage>& images,
   return masks;
 }
 
-void WriteMasks(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteMasks(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                 const std::set<std::string>& classes, const ExportInput& input,
                 ExportFolder& folder, std::vector<NerfstudioFrame>& frames) {
   if (!input.masks || classes.empty()) {
@@ -140,7 +140,7 @@ void ColourPoints(ExportInput& input) {
   UseColours(colours, input.model);
 }
 
-void WriteImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder) {
   PointColours colours(input.map->map, input.map->located.ids);
   const PinholeCamera& camera = input.map->sensor.camera;
@@ -154,7 +154,7 @@ void WriteImages(const std::vector<KeyframeImage>& images, const PinholeView& vi
 }
 
 std::vector<NerfstudioFrame> WriteDepthsAndMasks(const std::vector<KeyframeImage>& images,
-                                                 const PinholeView& view,
+                                                 const ExportCamera& view,
                                                  const std::set<std::string>& masked_classes,
                                                  ExportInput& input, ExportFolder& folder) {
   std::vector<NerfstudioFrame> frames;

@@ -92,7 +92,7 @@ void UsePointsOfRun(const FinishedRun& run, ExportModel& model) {
 
 void UseSceneOfRun(const FinishedRun& run, ExportModel& model) {
   model.scene = run.ReadSceneGraph().value_or(Scene());
-  if (const std::optional<ObjectReport> objects = run.ReadObjectReport()) {
+  if (const std::optional<ObjectResults> objects = run.ReadObjectResults()) {
     model.camera = objects->camera;
   }
 }

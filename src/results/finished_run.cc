@@ -105,7 +105,7 @@ std::optional<PlyPoints> FinishedRun::ReadLandmarkPoints() const {
   return Has("map.ply") ? std::optional(ReadMapLandmarks(folder / "map.ply")) : std::nullopt;
 }
 
-std::optional<ObjectReport> FinishedRun::ReadObjectReport() const {
+std::optional<ObjectResults> FinishedRun::ReadObjectResults() const {
   return Has("objects.json") ? std::optional(ReadObjects(folder / "objects.json")) : std::nullopt;
 }
 

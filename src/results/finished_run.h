@@ -11,7 +11,7 @@
 
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/ply_points.h"
 #include "scene/scene.h"
 
@@ -53,7 +53,7 @@ struct FinishedRun {
   Trajectory ReadKeyframePoses() const;  // of all sessions
   // The landmarks of map.ply. Absent, like the others, if the run has no such file.
   std::optional<PlyPoints> ReadLandmarkPoints() const;
-  std::optional<ObjectReport> ReadObjectReport() const;
+  std::optional<ObjectResults> ReadObjectResults() const;
   std::optional<Scene> ReadSceneGraph() const;
   // The ground truth that the run has converted, so that it has the stamps and axes of its poses.
   std::optional<Trajectory> ReadConvertedGroundtruth() const;

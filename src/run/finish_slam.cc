@@ -17,9 +17,9 @@
 #include "results/summary.h"
 #include "run/map_session.h"
 #include "run/mcap_output.h"
+#include "run/print_results.h"
 #include "run/program.h"
 #include "run/report_output.h"
-#include "run/run_report.h"
 #include "run/summarize_run.h"
 #include "scene/make_scene.h"
 #include "system/compose_trajectory.h"
@@ -33,7 +33,7 @@ struct RunContent {
   std::shared_ptr<const Map> map;  // not null
   Trajectory trajectory;
   LocatedLandmarks landmarks;
-  ObjectReport objects;
+  ObjectResults objects;
   RunSummary summary;
 };
 
@@ -137,7 +137,7 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
                             .trajectory = &content.trajectory,
                             .objects = &content.objects});
   if (!arguments.quiet) {
-    PrintReport(arguments, content.summary, content.objects);
+    PrintResults(arguments, content.summary, content.objects);
   }
   live.End(content.map, SummaryJson(content.summary));
   const std::string unreported =

@@ -143,7 +143,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
-    live.NoteReport(report);
+    live.NoteFrame(report);
     NoteFrame(report, arguments.selection,
               report.tracked.timestamp - sequence.frames.front().timestamp, result);
   });

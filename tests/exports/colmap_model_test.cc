@@ -27,7 +27,7 @@ class Colmap : public ::testing::Test {
 
   SyntheticWorld world_;
   SyntheticMap made_;
-  PinholeView view_;
+  ExportCamera view_;
   size_t located_ = 0;
   ColmapModel model_;
 };

@@ -72,7 +72,7 @@ TEST_F(FinishedRunTest, WhatARunDidNotHaveIsEmpty) {
     EXPECT_EQ(text, "");
   }
   EXPECT_FALSE(run.ReadLandmarkPoints());
-  EXPECT_FALSE(run.ReadObjectReport());
+  EXPECT_FALSE(run.ReadObjectResults());
   EXPECT_FALSE(run.ReadSceneGraph());
   EXPECT_FALSE(run.ReadConvertedGroundtruth());
 }
@@ -105,7 +105,7 @@ TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {
   folder_.Write("a/run/objects.json", "{");
   folder_.Write("a/run/scene.json", "{");
   folder_.Write("a/run/map.ply", "ply");
-  ExpectInputError([&] { run.ReadObjectReport(); }, {"objects.json"});
+  ExpectInputError([&] { run.ReadObjectResults(); }, {"objects.json"});
   ExpectInputError([&] { run.ReadSceneGraph(); }, {"scene.json"});
   ExpectInputError([&] { run.ReadLandmarkPoints(); }, {"map.ply"});
 }

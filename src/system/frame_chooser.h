@@ -13,7 +13,7 @@
 namespace hullslam {
 
 // How far the camera moves or turns between two views that are used.
-struct ViewChoice {
+struct FrameChoice {
   double min_distance = 0.05;  // m
   double min_angle = 5.0;      // degrees
 };
@@ -23,9 +23,9 @@ struct ViewChoice {
 // size, or is new, a quarter of that motion is enough. This gives small objects that are seen for a
 // short time enough views, and it keeps neighbouring views of an object similar enough for
 // association.
-class ViewChooser {
+class FrameChooser {
  public:
-  explicit ViewChooser(const ViewChoice& choice = {}) : choice_(choice) {}
+  explicit FrameChooser(const FrameChoice& choice = {}) : choice_(choice) {}
 
   // Whether the next frame, with this pose (m), is chosen. The first one always is. `read_masks`
   // gives the masks of the frame; it is called only if they matter.
@@ -42,7 +42,7 @@ class ViewChooser {
   bool HasMoved(const Rigid3& pose, double share) const;
   bool HasMaskMoved(const std::vector<LabelledBox>& boxes) const;
 
-  ViewChoice choice_;
+  FrameChoice choice_;
   std::optional<Rigid3> last_;           // the pose of the last chosen frame
   std::vector<LabelledBox> last_boxes_;  // around its masks
 };

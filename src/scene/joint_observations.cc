@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/joint_views.h"
+#include "scene/joint_observations.h"
 
 #include <algorithm>
 #include <optional>
@@ -85,10 +85,10 @@ bool IsMaskInside(const SeenObject& a, const SeenObject& b) {
   return area > 0.0 && IntersectionArea(a.detection->hull, b.detection->hull) >= kInside * area;
 }
 
-void CountPair(const SeenObject& a, const SeenObject& b, ViewStatistics& statistics) {
+void CountPair(const SeenObject& a, const SeenObject& b, ObservationStatistics& statistics) {
   if (a.detection != nullptr && b.detection != nullptr) {
-    JointViews& joint = statistics.joint[{a.id, b.id}];
-    ++joint.views;
+    JointObservations& joint = statistics.joint[{a.id, b.id}];
+    ++joint.observations;
     joint.in_front += IsNearer(a, b) && IsAcross(a, b) ? 1 : 0;
     joint.mask_inside += IsMaskInside(a, b) ? 1 : 0;
   }
@@ -96,8 +96,8 @@ void CountPair(const SeenObject& a, const SeenObject& b, ViewStatistics& statist
     const bool is_behind = IsNearer(b, a) && a.box.intersects(b.box);
     const double share =
         is_behind ? IntersectionArea(a.outline, b.outline) / SignedArea(a.outline) : 0.0;
-    HiddenViews& hidden = statistics.hidden[{a.id, b.id}];
-    ++hidden.views;
+    HiddenCounts& hidden = statistics.hidden[{a.id, b.id}];
+    ++hidden.observations;
     hidden.hidden += share >= kHiddenShare ? 1 : 0;
     hidden.most = std::max(hidden.most, std::min(1.0, share));
   }
@@ -105,14 +105,14 @@ void CountPair(const SeenObject& a, const SeenObject& b, ViewStatistics& statist
 
 }  // namespace
 
-const JointViews& ViewStatistics::Joint(ObjectId a, ObjectId b) const {
-  static const JointViews none;
+const JointObservations& ObservationStatistics::Joint(ObjectId a, ObjectId b) const {
+  static const JointObservations none;
   const auto found = joint.find({a, b});
   return found == joint.end() ? none : found->second;
 }
 
-ViewStatistics CollectViewStatistics(const Map& map, const PinholeCamera& camera) {
-  ViewStatistics statistics;
+ObservationStatistics CollectObservationStatistics(const Map& map, const PinholeCamera& camera) {
+  ObservationStatistics statistics;
   map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
     const std::vector<SeenObject> seen = ObjectsIn(map, keyframe, camera);
     for (const SeenObject& a : seen) {

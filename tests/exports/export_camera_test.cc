@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/pinhole_view.h"
+#include "exports/export_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ cv::Mat MadeImage(const PinholeCamera& camera, bool of_columns) {
 
 // The law of an undistorted image: its pixel shows what the raw image shows at the raw pixel of the
 // same ray.
-TEST(PinholeView, APixelShowsTheRawPixelOfItsRay) {
+TEST(ExportCamera, APixelShowsTheRawPixelOfItsRay) {
   const PinholeCamera camera = DistortedCamera();
-  const PinholeView view(camera);
+  const ExportCamera view(camera);
   const cv::Mat columns = view.Undistort(MadeImage(camera, true), cv::INTER_LINEAR);
   const cv::Mat rows = view.Undistort(MadeImage(camera, false), cv::INTER_LINEAR);
   ASSERT_EQ(columns.cols, view.camera().width);
@@ -41,9 +41,9 @@ TEST(PinholeView, APixelShowsTheRawPixelOfItsRay) {
   }
 }
 
-TEST(PinholeView, EveryPixelWasSeen) {
+TEST(ExportCamera, EveryPixelWasSeen) {
   const PinholeCamera camera = DistortedCamera();
-  const PinholeView view(camera);
+  const ExportCamera view(camera);
   const double right = view.camera().width - 1.0;
   const double bottom = view.camera().height - 1.0;
   for (const Eigen::Vector2d& corner :
@@ -58,9 +58,9 @@ TEST(PinholeView, EveryPixelWasSeen) {
   EXPECT_GT(view.camera().width, camera.width * 3 / 4);
 }
 
-TEST(PinholeView, KeypointsMoveWithTheImage) {
+TEST(ExportCamera, KeypointsMoveWithTheImage) {
   const PinholeCamera camera = DistortedCamera();
-  const PinholeView view(camera);
+  const ExportCamera view(camera);
   const Eigen::Vector3d point(0.1, -0.2, 1.5);
   EXPECT_NEAR((view.FromUndistorted(camera.Project(point)) - view.camera().Project(point)).norm(),
               0.0, 1e-9);
@@ -69,18 +69,18 @@ TEST(PinholeView, KeypointsMoveWithTheImage) {
   EXPECT_FALSE(view.Contains({0.0, view.camera().height - 0.4}));
 }
 
-TEST(PinholeView, WithoutDistortionTheImageStaysAsItIs) {
+TEST(ExportCamera, WithoutDistortionTheImageStaysAsItIs) {
   PinholeCamera camera = DistortedCamera();
   camera.k1 = camera.k2 = camera.p1 = 0.0;
-  const PinholeView view(camera);
+  const ExportCamera view(camera);
   EXPECT_EQ(view.camera(), camera);
   const cv::Mat image = MadeImage(camera, true);
   EXPECT_EQ(view.Undistort(image, cv::INTER_LINEAR).data, image.data);
 }
 
 // Pixels have whole numbers at their centres, so an image ends half a pixel beyond the last ones.
-TEST(PinholeView, ContainsTheWholePixelsAtTheBorder) {
-  const PinholeView view(DistortedCamera());
+TEST(ExportCamera, ContainsTheWholePixelsAtTheBorder) {
+  const ExportCamera view(DistortedCamera());
   const double right = view.camera().width - 1.0;
   const double bottom = view.camera().height - 1.0;
   EXPECT_TRUE(view.Contains({-0.4, -0.4}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/pinhole_view.h"
+#include "exports/export_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ cv::Rect SeenRectangle(const PinholeCamera& camera) {
 
 }  // namespace
 
-PinholeView::PinholeView(const PinholeCamera& camera) : camera_(camera) {
+ExportCamera::ExportCamera(const PinholeCamera& camera) : camera_(camera) {
   if (!camera.IsDistorted()) {
     return;
   }
@@ -65,12 +65,12 @@ PinholeView::PinholeView(const PinholeCamera& camera) : camera_(camera) {
   }
 }
 
-bool PinholeView::Contains(const Eigen::Vector2d& pixel) const {
+bool ExportCamera::Contains(const Eigen::Vector2d& pixel) const {
   return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < camera_.width - 0.5 &&
          pixel.y() < camera_.height - 0.5;
 }
 
-cv::Mat PinholeView::Undistort(const cv::Mat& raw, int interpolation) const {
+cv::Mat ExportCamera::Undistort(const cv::Mat& raw, int interpolation) const {
   if (raw_x_.empty()) {
     return raw;
   }

@@ -15,12 +15,12 @@ namespace hullslam {
 // pinhole that looks at the mask, with as many px per radian as the raw image has there. A line of
 // one such image is a line of the other, since both are planes through the camera's centre, but a
 // tolerance in px means the same everywhere only in the image that looks at the mask.
-class MaskView {
+class MaskCamera {
  public:
   // The undistorted image.
-  MaskView(const PinholeCamera& camera);  // NOLINT(google-explicit-constructor)
+  MaskCamera(const PinholeCamera& camera);  // NOLINT(google-explicit-constructor)
   // The view of a mask with these outlines (raw px).
-  MaskView(const PinholeCamera& camera, std::span<const std::vector<Eigen::Vector2d>> outlines);
+  MaskCamera(const PinholeCamera& camera, std::span<const std::vector<Eigen::Vector2d>> outlines);
 
   double focal() const { return focal_; }  // px
   const PinholeCamera& camera() const { return camera_; }

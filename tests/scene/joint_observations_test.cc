@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/joint_views.h"
+#include "scene/joint_observations.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ void AddFrontView(Map& map, const Sensor& sensor, const std::vector<MadeObject>&
   }
 }
 
-TEST(ViewStatistics, TellWhatIsBeforeAndWhatIsHidden) {
+TEST(ObservationStatistics, TellWhatIsBeforeAndWhatIsHidden) {
   const Sensor sensor = MakeObjectSensor();
   const auto facing = [](double depth) {
     return Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, depth));
@@ -44,24 +44,24 @@ TEST(ViewStatistics, TellWhatIsBeforeAndWhatIsHidden) {
   }
   AddFrontView(map, sensor, objects, ids, {true, true});
   AddFrontView(map, sensor, objects, ids, {true, false});
-  const ViewStatistics statistics = CollectViewStatistics(map, sensor.camera);
-  const JointViews& joint = statistics.Joint(ids[0], ids[1]);
-  EXPECT_EQ(joint.views, 1U);
+  const ObservationStatistics statistics = CollectObservationStatistics(map, sensor.camera);
+  const JointObservations& joint = statistics.Joint(ids[0], ids[1]);
+  EXPECT_EQ(joint.observations, 1U);
   EXPECT_EQ(joint.in_front, 1U);
   EXPECT_EQ(joint.mask_inside, 1U);
   EXPECT_EQ(statistics.Joint(ids[1], ids[0]).in_front, 0U);
   EXPECT_EQ(statistics.Joint(ids[1], ids[0]).mask_inside, 0U);
-  const HiddenViews& hidden = statistics.hidden.at({ids[1], ids[0]});
-  EXPECT_EQ(hidden.views, 2U);
+  const HiddenCounts& hidden = statistics.hidden.at({ids[1], ids[0]});
+  EXPECT_EQ(hidden.observations, 2U);
   EXPECT_EQ(hidden.hidden, 2U);
   EXPECT_NEAR(hidden.most, 0.44, 0.03);  // (0.1 / 0.3 * 2)^2
   EXPECT_EQ(statistics.hidden.at({ids[0], ids[1]}).hidden, 0U);
-  EXPECT_EQ(statistics.Joint(ids[0], ObjectId(77)).views, 0U);
+  EXPECT_EQ(statistics.Joint(ids[0], ObjectId(77)).observations, 0U);
 }
 
 // The boxes of the cup and of the screen are 104 and 156 px wide. Half of the cup's box must be
 // before the screen.
-TEST(ViewStatistics, AnObjectAtTheSideIsNotInFront) {
+TEST(ObservationStatistics, AnObjectAtTheSideIsNotInFront) {
   const Sensor sensor = MakeObjectSensor();
   const auto views_in_front = [&](double aside) {
     const auto at = [](double x, double depth) {
@@ -77,7 +77,7 @@ TEST(ViewStatistics, AnObjectAtTheSideIsNotInFront) {
       map.MutableObject(ids.back()).ellipsoid = object.ellipsoid;
     }
     AddFrontView(map, sensor, objects, ids, {true, true});
-    return CollectViewStatistics(map, sensor.camera).Joint(ids[0], ids[1]).in_front;
+    return CollectObservationStatistics(map, sensor.camera).Joint(ids[0], ids[1]).in_front;
   };
   EXPECT_EQ(views_in_front(0.13), 1U);  // 62 px are common
   EXPECT_EQ(views_in_front(-0.13), 1U);
@@ -86,7 +86,7 @@ TEST(ViewStatistics, AnObjectAtTheSideIsNotInFront) {
 }
 
 // What a keyframe at the origin tells about two objects.
-std::pair<JointViews, HiddenViews> StatisticsOf(const Ellipsoid& a, const Ellipsoid& b) {
+std::pair<JointObservations, HiddenCounts> StatisticsOf(const Ellipsoid& a, const Ellipsoid& b) {
   const Sensor sensor = MakeObjectSensor();
   const std::vector<MadeObject> objects = {{"cup", a}, {"tv", b}};
   Map map;
@@ -97,7 +97,7 @@ std::pair<JointViews, HiddenViews> StatisticsOf(const Ellipsoid& a, const Ellips
     map.MutableObject(ids.back()).ellipsoid = object.ellipsoid;
   }
   AddFrontView(map, sensor, objects, ids, {true, true});
-  const ViewStatistics statistics = CollectViewStatistics(map, sensor.camera);
+  const ObservationStatistics statistics = CollectObservationStatistics(map, sensor.camera);
   return {statistics.Joint(ids[0], ids[1]), statistics.hidden.at({ids[1], ids[0]})};
 }
 
@@ -107,7 +107,7 @@ Ellipsoid Ball(double x, double depth, double radius) {
 }
 
 // The centre of each is outside of the middle half of the other.
-TEST(ViewStatistics, ObjectsAtTheSameDepthAreNotInFront) {
+TEST(ObservationStatistics, ObjectsAtTheSameDepthAreNotInFront) {
   const auto in_front = [](double radius_a, double depth_b, double radius_b) {
     return StatisticsOf(Ball(0.0, 2.0, radius_a), Ball(0.0, depth_b, radius_b)).first.in_front;
   };
@@ -120,7 +120,7 @@ TEST(ViewStatistics, ObjectsAtTheSameDepthAreNotInFront) {
 }
 
 // A ball of radius r at 1 m covers about (2 r / 0.3)^2 of one of radius 0.3 m at 2 m.
-TEST(ViewStatistics, LessThanAQuarterIsNotHidden) {
+TEST(ObservationStatistics, LessThanAQuarterIsNotHidden) {
   const auto hidden = [](double radius) {
     return StatisticsOf(Ball(0.0, 1.0, radius), Ball(0.0, 2.0, 0.3)).second;
   };
@@ -130,7 +130,7 @@ TEST(ViewStatistics, LessThanAQuarterIsNotHidden) {
   EXPECT_EQ(hidden(0.5).most, 1.0) << "a share is not above 1";
 }
 
-TEST(ViewStatistics, AMaskIsInsideIfFourFifthsOfItsHullAre) {
+TEST(ObservationStatistics, AMaskIsInsideIfFourFifthsOfItsHullAre) {
   const auto inside = [](double aside) {
     return StatisticsOf(Ball(aside, 1.0, 0.1), Ball(0.0, 2.0, 0.6)).first.mask_inside;
   };

@@ -11,10 +11,10 @@ namespace hullslam {
 // Images without distortion for programs that only know pinhole cameras. The focal lengths are
 // those of the camera, so images are neither enlarged nor reduced. The image is the largest
 // rectangle that all four borders of the raw image allow, so every pixel of it was seen.
-class PinholeView {
+class ExportCamera {
  public:
   // Throws InputError if there is no such rectangle, because the distortion is too strong.
-  explicit PinholeView(const PinholeCamera& camera);
+  explicit ExportCamera(const PinholeCamera& camera);
 
   // Without distortion, with the size and the principal point of the images of this view. Like
   // everywhere in HullSLAM, the centre of the first pixel is (0, 0).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/view_overlap.h"
+#include "tracking/image_overlap.h"
 
 #include <gtest/gtest.h>
 

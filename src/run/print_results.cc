@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/run_report.h"
+#include "run/print_results.h"
 
 #include <fmt/format.h>
 
@@ -148,8 +148,8 @@ std::string Describe(const ChangedObject& changed) {
 
 }  // namespace
 
-void PrintReport(const RunArguments& arguments, const RunSummary& summary,
-                 const ObjectReport& objects) {
+void PrintResults(const RunArguments& arguments, const RunSummary& summary,
+                  const ObjectResults& objects) {
   const TrajectorySummary& trajectory = summary.trajectory;
   Print("{}: {} tracked, {} lost, {} skipped", Counted(trajectory.frames, "frame"),
         trajectory.tracked, trajectory.lost, trajectory.skipped);

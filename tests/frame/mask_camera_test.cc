@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/mask_view.h"
+#include "frame/mask_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -29,9 +29,9 @@ Outlines CircleAt(const PinholeCamera& camera, double degrees, double radius) {
   return outlines;
 }
 
-TEST(MaskView, IsTheUndistortedImageOfAPinhole) {
+TEST(MaskCamera, IsTheUndistortedImageOfAPinhole) {
   const PinholeCamera camera = DistortedCamera();
-  const MaskView view(camera, Outlines{{{100.0, 100.0}, {150.0, 100.0}, {120.0, 160.0}}});
+  const MaskCamera view(camera, Outlines{{{100.0, 100.0}, {150.0, 100.0}, {120.0, 160.0}}});
   EXPECT_EQ(view.Undistort({33.0, 44.0}), camera.Undistort({33.0, 44.0}));
   EXPECT_EQ(view.Distort({33.0, 44.0}), camera.Distort({33.0, 44.0}));
   EXPECT_EQ(view.focal(), camera.fx);
@@ -41,11 +41,11 @@ TEST(MaskView, IsTheUndistortedImageOfAPinhole) {
 }
 
 // The view has as many pixels as the raw image, also where the undistorted image is stretched.
-TEST(MaskView, KeepsTheScaleOfTheRawImageAtTheRim) {
+TEST(MaskCamera, KeepsTheScaleOfTheRawImageAtTheRim) {
   const PinholeCamera camera = FisheyeCamera();
   for (const double degrees : {0.0, 30.0, 60.0, 72.0}) {
     const Outlines outlines = CircleAt(camera, degrees, 10.0);
-    const MaskView view(camera, outlines);
+    const MaskCamera view(camera, outlines);
     double area = 0.0;
     for (size_t i = 0; i < outlines[0].size(); ++i) {
       const Eigen::Vector2d a = view.Undistort(outlines[0][i]);
@@ -57,21 +57,21 @@ TEST(MaskView, KeepsTheScaleOfTheRawImageAtTheRim) {
   }
 }
 
-TEST(MaskView, TheLargestAngleOfAFisheyeIsABorder) {
+TEST(MaskCamera, TheLargestAngleOfAFisheyeIsABorder) {
   const PinholeCamera camera = FisheyeCamera();
   PinholeCamera large = camera;
   large.width = 1000;
   large.cx = 500.0;
-  const MaskView view(large, CircleAt(large, 70.0, 10.0));
+  const MaskCamera view(large, CircleAt(large, 70.0, 10.0));
   const double limit = 244.0 * 1.396 * 1.001;  // px, about
   EXPECT_TRUE(view.IsAtBorder(view.Undistort({large.cx + limit + 30.0, large.cy}), 5.0));
   EXPECT_FALSE(view.IsAtBorder(view.Undistort({large.cx + limit - 20.0, large.cy}), 5.0));
 }
 
 // The tangents of an ellipsoid's outline in the view are tangents of its projected ellipse.
-TEST(MaskView, LinesAndEllipsesStayThoseOfTheObject) {
+TEST(MaskCamera, LinesAndEllipsesStayThoseOfTheObject) {
   const PinholeCamera camera = FisheyeCamera();
-  const MaskView view(camera, CircleAt(camera, 65.0, 10.0));
+  const MaskCamera view(camera, CircleAt(camera, 65.0, 10.0));
   const Ellipse in_view{.center = view.Undistort(CircleAt(camera, 65.0, 0.0)[0][0]),
                         .shape = Eigen::Vector2d(400.0, 225.0).asDiagonal()};
   Detection detection;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/view_chooser.h"
+#include "system/frame_chooser.h"
 
 #include <algorithm>
 #include <numbers>
@@ -7,8 +7,8 @@
 
 namespace hullslam {
 
-bool ViewChooser::Choose(const Rigid3& world_from_cam,
-                         const std::function<std::vector<InstanceMask>()>& read_masks) {
+bool FrameChooser::Choose(const Rigid3& world_from_cam,
+                          const std::function<std::vector<InstanceMask>()>& read_masks) {
   constexpr double kSmallMotion = 0.25;
   if (last_ && !HasMoved(world_from_cam, kSmallMotion)) {
     return false;
@@ -22,7 +22,8 @@ bool ViewChooser::Choose(const Rigid3& world_from_cam,
   return true;
 }
 
-std::vector<ViewChooser::LabelledBox> ViewChooser::BoxesOf(const std::vector<InstanceMask>& masks) {
+std::vector<FrameChooser::LabelledBox> FrameChooser::BoxesOf(
+    const std::vector<InstanceMask>& masks) {
   std::vector<LabelledBox> boxes;
   for (const InstanceMask& mask : masks) {
     LabelledBox& labelled = boxes.emplace_back();
@@ -38,14 +39,14 @@ std::vector<ViewChooser::LabelledBox> ViewChooser::BoxesOf(const std::vector<Ins
 
 // Whether the camera has moved by `share` times the least distance, or has turned by `share` times
 // the least angle.
-bool ViewChooser::HasMoved(const Rigid3& pose, double share) const {
+bool FrameChooser::HasMoved(const Rigid3& pose, double share) const {
   const double angle = AngularDistance(last_->rotation, pose.rotation) * 180.0 / std::numbers::pi;
   return (pose.translation - last_->translation).norm() >= share * choice_.min_distance ||
          angle >= share * choice_.min_angle;
 }
 
 // Whether a mask has moved by more than half of its size, or is new.
-bool ViewChooser::HasMaskMoved(const std::vector<LabelledBox>& boxes) const {
+bool FrameChooser::HasMaskMoved(const std::vector<LabelledBox>& boxes) const {
   constexpr double kMostMoved = 0.5;
   return std::any_of(boxes.begin(), boxes.end(), [&](const LabelledBox& now) {
     return std::none_of(last_boxes_.begin(), last_boxes_.end(), [&](const LabelledBox& then) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/view_chooser.h"
+#include "system/frame_chooser.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ class ViewChooserTest : public ::testing::Test {
     });
   }
 
-  ViewChooser chooser_{{.min_distance = 0.1, .min_angle = 10.0}};
+  FrameChooser chooser_{{.min_distance = 0.1, .min_angle = 10.0}};
   int reads_ = 0;
 };
 

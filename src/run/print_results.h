@@ -9,15 +9,15 @@
 
 #include "hullslam/map/messages.h"
 #include "hullslam/system/options.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/summary.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
 
 // Prints the results of a SLAM run.
-void PrintReport(const RunArguments& arguments, const RunSummary& summary,
-                 const ObjectReport& objects);
+void PrintResults(const RunArguments& arguments, const RunSummary& summary,
+                  const ObjectResults& objects);
 
 // Says why a run of `given` frames that came to its end counts as failed: too many frames were
 // lost. Empty if it does not count as failed. `frames` are the tracked and the lost frames.

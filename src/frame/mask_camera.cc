@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/mask_view.h"
+#include "frame/mask_camera.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -28,12 +28,12 @@ Eigen::Vector3d MeanRay(const PinholeCamera& camera,
 
 }  // namespace
 
-MaskView::MaskView(const PinholeCamera& camera) : camera_(camera), focal_(camera.fx) {}
+MaskCamera::MaskCamera(const PinholeCamera& camera) : camera_(camera), focal_(camera.fx) {}
 
 // An area of the plane z = 1 in the direction c of unit length is the solid angle over c_z^3.
-MaskView::MaskView(const PinholeCamera& camera,
-                   std::span<const std::vector<Eigen::Vector2d>> outlines)
-    : MaskView(camera) {
+MaskCamera::MaskCamera(const PinholeCamera& camera,
+                       std::span<const std::vector<Eigen::Vector2d>> outlines)
+    : MaskCamera(camera) {
   if (!camera.IsFisheye()) {
     return;
   }
@@ -47,12 +47,12 @@ MaskView::MaskView(const PinholeCamera& camera,
   center_ = camera.Distort(pixel);
 }
 
-Eigen::Vector3d MaskView::RayOf(const Eigen::Vector2d& pixel) const {
+Eigen::Vector3d MaskCamera::RayOf(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d offset = (pixel - center_) / focal_;
   return view_from_cam_.transpose() * offset.homogeneous();
 }
 
-Eigen::Vector2d MaskView::Undistort(const Eigen::Vector2d& raw) const {
+Eigen::Vector2d MaskCamera::Undistort(const Eigen::Vector2d& raw) const {
   const Eigen::Vector2d undistorted = camera_.Undistort(raw);
   if (!is_turned_) {
     return undistorted;
@@ -63,11 +63,11 @@ Eigen::Vector2d MaskView::Undistort(const Eigen::Vector2d& raw) const {
   return center_ + focal_ / std::max(kLeastCosine, ray.z()) * ray.head<2>();
 }
 
-Eigen::Vector2d MaskView::Distort(const Eigen::Vector2d& pixel) const {
+Eigen::Vector2d MaskCamera::Distort(const Eigen::Vector2d& pixel) const {
   return is_turned_ ? RawPixelOfRay(camera_, RayOf(pixel)) : camera_.Distort(pixel);
 }
 
-bool MaskView::IsAtBorder(const Eigen::Vector2d& pixel, double border) const {
+bool MaskCamera::IsAtBorder(const Eigen::Vector2d& pixel, double border) const {
   const Eigen::Vector2d raw = Distort(pixel);
   const bool is_at_side = raw.x() <= border || raw.y() <= border ||
                           raw.x() >= camera_.width - 1 - border ||
@@ -80,7 +80,7 @@ bool MaskView::IsAtBorder(const Eigen::Vector2d& pixel, double border) const {
   return point.norm() + border / camera_.fx >= RadiusOfAngle(camera_, PinholeCamera::kMostAngle);
 }
 
-void MaskView::ToUndistorted(Detection& detection) const {
+void MaskCamera::ToUndistorted(Detection& detection) const {
   if (!is_turned_) {
     return;
   }
