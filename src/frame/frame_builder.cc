@@ -142,11 +142,8 @@ cv::Mat UnusedPixels(const PinholeCamera& camera) {
   return unused;
 }
 
-// A pixel of a fisheye image is a large angle, so rounding to whole pixels would cost precision.
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
   features.keep_edges = features.keep_edges || !sensor.IsMonocular();
-  features.subpixel =
-      features.subpixel || sensor.kind == SensorKind::kStereo || sensor.camera.IsFisheye();
   return features;
 }
 

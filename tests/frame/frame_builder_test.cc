@@ -72,13 +72,13 @@ Eigen::Vector2d RawPixel(const Keypoint& keypoint) {
   return DistortedSensor().camera.Distort(keypoint.undistorted.cast<double>());
 }
 
-// The indices of the keypoints whose raw position is in a square.
+// The indices of the keypoints whose raw pixel is in a square.
 std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double top, double side) {
   const Eigen::AlignedBox2d square(Eigen::Vector2d(left, top),
                                    Eigen::Vector2d(left + side, top + side));
   std::vector<uint32_t> inside;
   for (uint32_t i = 0; i < frame.features.size(); ++i) {
-    if (square.contains(RawPixel(frame.features.keypoints[i]))) {
+    if (square.contains(RawPixel(frame.features.keypoints[i]).array().round().matrix())) {
       inside.push_back(i);
     }
   }
@@ -129,9 +129,8 @@ TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
   EXPECT_EQ(count(sensor_), kept);
 }
 
-// A whole pixel of an upper level is several pixels of the image, which is what limits the rotation
-// of a far view.
-TEST_F(FrameBuilderTest, PositionsOfAStereoCameraAreFinerThanAPixel) {
+// A whole pixel of an upper level is several pixels of the image.
+TEST_F(FrameBuilderTest, PositionsAreFinerThanAPixelAsAreDisparities) {
   Sensor stereo = sensor_;
   stereo.kind = SensorKind::kStereo;
   stereo.camera = {.fx = 260.0,
