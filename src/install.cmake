@@ -78,7 +78,7 @@ foreach(mode mono rgbd stereo)
   hullslam_install_link(hullslam-vslamlab_hullslam_${mode}
                         ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/vslamlab.py)
 endforeach()
-foreach(script plot_run ablation plot_ablation object_table reproduce_tables make_masks
+foreach(script plot_run ablation object_table reproduce_tables make_masks
                prepare_network)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
