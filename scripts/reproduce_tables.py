@@ -20,14 +20,13 @@ Exit codes: 0 done (failed runs are a part of the tables), 1 stopped before its 
 input.
 """
 
-import argparse
 import dataclasses
 import json
 import pathlib
 import shutil
 import sys
 
-from support import InputError, Stopped, exit_code, programs_folder, read_json, require, write
+from support import exit_code, InputError, parser_of, programs_folder, read_json, require, write
 
 require("numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
@@ -209,8 +208,7 @@ def reproduce(arguments):
 
 
 def parse_arguments(words):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     data = parser.add_argument_group("sequences")
     data.add_argument("--suite", choices=("synthetic",), help="the sequences of make_synthetic")
     data.add_argument("--data", type=pathlib.Path, action="append", default=[], metavar="FOLDER",
