@@ -60,7 +60,6 @@ install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR
         DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR} COMPONENT library)
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/object_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/support.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
@@ -78,7 +77,7 @@ foreach(mode mono rgbd stereo)
   hullslam_install_link(hullslam-vslamlab_hullslam_${mode}
                         ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/vslamlab.py)
 endforeach()
-foreach(script plot_run ablation plot_ablation object_table reproduce_tables make_masks
+foreach(script plot_run ablation reproduce_tables make_masks
                prepare_network)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
