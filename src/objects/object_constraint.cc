@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "costs/both_views.h"
 #include "costs/depth_anchor.h"
 #include "costs/make_object_cost.h"
 #include "costs/pixel_error.h"
@@ -45,7 +46,8 @@ std::unique_ptr<RobustRowsCost> MakeRobust(std::unique_ptr<ceres::CostFunction> 
 std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, const ObjectView& view,
                                                std::span<const SilhouetteLine> lines,
                                                const Ellipsoid& ellipsoid, double misfit_px,
-                                               const ObjectConstraintOptions& options) {
+                                               const ObjectConstraintOptions& options,
+                                               std::span<const SilhouetteLine> right_lines) {
   const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
   auto sigma =
       ResidualOfPixelError(options.residual, camera, view.cam_from_world, ellipsoid, sigma_px);
@@ -67,6 +69,12 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, cons
   auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma, projected);
   if (cost == nullptr) {
     return nullptr;
+  }
+  if (!right_lines.empty() && TakesLines(options.residual)) {
+    cost = std::make_unique<BothViewsCost>(
+        std::move(cost),
+        MakeObjectCost(options.residual, camera, *view.detection, right_lines, *sigma),
+        camera.bf / camera.fx);
   }
   const double scale = std::max(options.loss_scale, options.min_loss_px / sigma_px);
   return MakeRobust(std::move(cost), MakeLoss(options.loss, scale), options.max_effective_lines);
@@ -92,9 +100,11 @@ std::unique_ptr<RobustRowsCost> MakeDepth(const ObjectView& view,
 ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectView& view,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
-                                      const ObjectConstraintOptions& options) {
-  return {.silhouette = MakeSilhouette(camera, view, lines, ellipsoid, misfit_px, options),
-          .depth = MakeDepth(view, options.depth)};
+                                      const ObjectConstraintOptions& options,
+                                      std::span<const SilhouetteLine> right_lines) {
+  return {
+      .silhouette = MakeSilhouette(camera, view, lines, ellipsoid, misfit_px, options, right_lines),
+      .depth = MakeDepth(view, options.depth)};
 }
 
 std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,

@@ -28,10 +28,13 @@ struct ObjectConstraint {
 // and `ellipsoid`, and rho is the loss with the scale max(loss_scale, min_loss_px / that hypot), in
 // sigmas. With SigmaUnit::kResidual, sigma = sigma_px instead. Depth points add the same kind of
 // sum with DepthAnchorCost. `lines` are the lines of the view's detection, possibly compensated.
+// `right_lines`, those of the right image, are more rows of the same detection: their errors are
+// those of its lines, so they do not make it count as more independent lines.
 ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectView& view,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
-                                      const ObjectConstraintOptions& options);
+                                      const ObjectConstraintOptions& options,
+                                      std::span<const SilhouetteLine> right_lines = {});
 
 // The prior that keeps an object near a shape (QuadricPriorCost). Its parameters are the object's
 // pose and log half axes.

@@ -35,8 +35,9 @@ class RefinementProblem {
     bool has_depth = false;
     for (const ObjectView& view : views) {
       poses_.push_back(ToBlock(view.cam_from_world));
-      ObjectConstraint constraint = MakeObjectConstraint(sensor.camera, view, view.detection->lines,
-                                                         ellipsoid, misfit_px, options);
+      ObjectConstraint constraint =
+          MakeObjectConstraint(sensor.camera, view, view.detection->lines, ellipsoid, misfit_px,
+                               options, view.detection->right_lines);
       Add(std::move(constraint.silhouette), poses_.back());
       Add(std::move(constraint.depth), poses_.back());
       has_depth = has_depth || !view.detection->points.empty();

@@ -17,7 +17,7 @@ ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
     const ObjectView view{KeyframeId(), start, object.detection};
     Term& term = terms_[i];
     term.cost = MakeObjectConstraint(camera, view, object.lines, object.ellipsoid, object.misfit_px,
-                                     options.constraint)
+                                     options.constraint, object.right_lines)
                     .silhouette;
     if (term.cost == nullptr) {
       continue;
