@@ -116,8 +116,10 @@ std::optional<fs::path> FinishedRun::Find(const std::string& path) const {
   return std::nullopt;
 }
 
-Trajectory FinishedRun::ReadPoses() const {
-  return OfRectified(sequence, ReadTrajectory(folder / "trajectory.txt"));
+Trajectory FinishedRun::ReadPoses() const { return OfRectified(sequence, ReadPosesAsRead()); }
+
+Trajectory FinishedRun::ReadPosesAsRead() const {
+  return ReadTrajectory(folder / "trajectory.txt");
 }
 
 Trajectory FinishedRun::ReadKeyframePoses() const {

@@ -129,6 +129,9 @@ TEST_F(FinishedRunTest, PosesAreThoseOfTheRectifiedCamera) {
     EXPECT_LT(pose.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1e-6);
     EXPECT_EQ(pose.translation, Eigen::Vector3d(1.0, 2.0, 3.0));
   }
+  EXPECT_GT(run.ReadPosesAsRead()[0].world_from_cam.rotation.angularDistance(
+                Eigen::Quaterniond::Identity()),
+            1.0);
   summary_.provenance.sequence_choices["rectified_from_left"] = "0 0 x";
   ExpectInputError([&] { Open().ReadPoses(); }, {"rectified_from_left", "'0 0 x'"});
 }
