@@ -246,6 +246,7 @@ def prepare(arguments):
 
 
 def main(words=None):
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # it also prints its exceptions
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("input", type=pathlib.Path, metavar="IN.onnx")
