@@ -235,10 +235,11 @@ void BindSystem(py::module_& module) {
           "From now on, frames that are tracked without masks await those of add_masks(): a\n"
           "keyframe of such a frame says nothing about objects until then. reset() switches\n"
           "this off.")
-      .def("add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
-           "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
-           "most 2 s of time stamps later. Only keyframes keep them. Returns False for a frame\n"
-           "that awaits no masks (any more).")
+      .def(
+          "add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
+          "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
+          "most 2 s of time stamps later. If they show an object, it becomes a keyframe unless it\n"
+          "is one. Returns False for a frame that awaits no masks (any more).")
       .def("finish", &Finish,
            "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
            "poses of all frames again. Ctrl+C ends it early.")

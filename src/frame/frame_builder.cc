@@ -248,6 +248,21 @@ void FrameBuilder::AddDetections(std::span<const InstanceMask> masks, const Dete
   }
 }
 
+std::vector<uint32_t> FrameBuilder::DynamicKeypoints(std::span<const InstanceMask> masks,
+                                                     const DetectionInput& input) const {
+  std::vector<uint32_t> dynamic;
+  if (remove_dynamic_) {
+    const cv::Mat mask =
+        DynamicMask(masks, dynamic_classes_, {sensor_.camera.width, sensor_.camera.height});
+    for (uint32_t i = 0; i < input.keypoints.size(); ++i) {
+      if (IsMasked(mask, input.keypoints[i])) {
+        dynamic.push_back(i);
+      }
+    }
+  }
+  return dynamic;
+}
+
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
   ExtractedFeatures extracted = stereo_
