@@ -42,8 +42,17 @@ bool IsRectified(const StereoCalibration& pair) {
          pair.right_from_left.rotation.angularDistance(Eigen::Quaterniond::Identity()) < kAngle;
 }
 
+void CheckCamera(PinholeCamera camera, const char* name, const std::string& origin) {
+  camera.bf = PinholeCamera().bf;  // is not used
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    throw InputError(fmt::format("{}: the {} camera: {}", origin, name, fault));
+  }
+}
+
 void CheckPair(const StereoCalibration& pair, const std::string& origin) {
   constexpr double kLeastBaseline = 1e-4;  // m
+  CheckCamera(pair.left, "left", origin);
+  CheckCamera(pair.right, "right", origin);
   if (pair.left.width != pair.right.width || pair.left.height != pair.right.height) {
     throw InputError(fmt::format(
         "{}: the left camera has images of {}x{} px and the right one of {}x{} px, expected equal "

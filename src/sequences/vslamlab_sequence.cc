@@ -18,9 +18,9 @@
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
-#include "settings/rotation_matrix.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
+#include "settings/yaml_pose.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
 
@@ -75,14 +75,7 @@ VslamlabCamera ReadEntry(const YamlMap& entry) {
 // The pose of a camera on the body. VSLAM-LAB has renamed its key.
 Rigid3 BodyFromCamera(const YamlMap& entry) {
   const char* const key = entry.Has("T_SC") ? "T_SC" : "T_BS";
-  const std::vector<double> numbers = entry.Numbers(key, 16, "a 4x4 matrix by rows");
-  const Eigen::Matrix4d matrix =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
-  const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());
-  if (!rotation) {
-    entry.Fail(key, "is no rotation and translation");
-  }
-  return {*rotation, matrix.topRightCorner<3, 1>()};
+  return ReadRigid3(entry, key);
 }
 
 // ---- rgb.csv

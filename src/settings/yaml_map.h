@@ -40,6 +40,8 @@ class YamlMap {
   // `names` says in messages what the numbers are.
   std::vector<double> Numbers(std::string_view key, size_t count, std::string_view names) const;
   std::vector<double> Numbers(std::string_view key) const;  // as many as there are
+  // The numbers of a matrix by rows: one of OpenCV (a map with `data`), a list, or a list of rows.
+  std::vector<double> Matrix(std::string_view key, size_t count) const;
   std::vector<std::string> Texts(std::string_view key, size_t count, std::string_view names) const;
   int Pixels(std::string_view key, double value) const;  // a whole number from 1 to 1e6
   YamlMap Map(std::string_view key) const;

@@ -160,7 +160,8 @@ TEST_F(VslamlabSequenceTest, RefusesCamerasThatAreNoPair) {
   };
   expect("T_BS: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"l and r", "baseline is 0 m"});
   expect("T_BS: [1, 0, 0, -0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"swapped"});
-  expect("T_BS: [2, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", {"T_BS is no rotation"});
+  expect("T_BS: [2, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]",
+         {"T_BS is not a rigid transform"});
   expect("T_BS: [1, 0]", {"T_BS"});
   expect("cam_type: grey", {"T_BS is not given"});
 }
