@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/solid_angle.h"
 #include "frame/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
@@ -79,16 +80,20 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
-double OverlapWithHull(const Polygon& polygon, const ReportedView& view,
-                       const Eigen::AlignedBox2d& image) {
-  const Polygon hull = ClipToBox(view.hull, image);
-  return view.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
-                     : IntersectionOverUnion(polygon, hull);
+// The pixels of the undistorted image of a fisheye lens are no measure, so solid angles are.
+double OverlapOf(const Polygon& outline, const Polygon& polygon, const PinholeCamera& camera) {
+  return camera.IsFisheye() ? OverlapOnSphere(camera, outline, polygon)
+                            : IntersectionOverUnion(outline, polygon);
 }
 
-double OverlapWithMask(const Polygon& polygon, const ReportedView& view,
-                       const Eigen::AlignedBox2d& image) {
-  return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), polygon);
+double OverlapWithHull(const Polygon& polygon, const ReportedView& view, const ImagePlane& image) {
+  const Polygon hull = ClipToBox(view.hull, image.bounds);
+  return view.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
+                     : OverlapOf(polygon, hull, image.camera);
+}
+
+double OverlapWithMask(const Polygon& polygon, const ReportedView& view, const ImagePlane& image) {
+  return OverlapOf(ClipToBox(WithPositiveArea(view.contour), image.bounds), polygon, image.camera);
 }
 
 void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse, const ReportedView& view,
@@ -123,9 +128,9 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const R
   }
   const Polygon polygon =
       VisiblePart(ellipse->Polygon(kEllipseCorners), image.camera, image.bounds);
-  fit.siou = OverlapWithHull(polygon, view, image.bounds);
+  fit.siou = OverlapWithHull(polygon, view, image);
   if (has_mask) {
-    fit.siou_mask = OverlapWithMask(polygon, view, image.bounds);
+    fit.siou_mask = OverlapWithMask(polygon, view, image);
   }
   MeasureLines(ellipsoid, *ellipse, view, image.k, fit);
   return fit;
