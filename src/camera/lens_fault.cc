@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <sstream>
 
@@ -99,6 +100,18 @@ std::string FindFisheyeFault(const PinholeCamera& camera) {
       return std::string(other.key) + " is '" + PrintNumber(other.coefficient) +
              "', expected 0: a fisheye lens (KannalaBrandt8) has only k1 to k4";
     }
+  }
+  // A ray cannot be more than 180 degrees from the axis, so the image must not go on there.
+  const double behind = RadiusOfAngle(camera, std::numbers::pi);
+  const double nearest_side =
+      std::min({camera.cx / camera.fx, camera.cy / camera.fy,
+                (camera.width - camera.cx) / camera.fx, (camera.height - camera.cy) / camera.fy});
+  if (LargestAngle(camera, std::numbers::pi) >= std::numbers::pi && nearest_side > behind) {
+    return "Camera.fx is '" + PrintNumber(camera.fx) + "': the field of view is larger than 360 " +
+           "degrees, because the opposite of the axis would be " +
+           PrintNumber(behind * std::min(camera.fx, camera.fy)) +
+           " px from the principal point and the border of the image is " +
+           PrintNumber(nearest_side * std::min(camera.fx, camera.fy)) + " px from it";
   }
   const double largest = LargestAngle(camera, PinholeCamera::kMostAngle);
   const double radius = RadiusOfAngle(camera, largest);

@@ -66,7 +66,8 @@ std::string SetNamedLens(std::string_view model, std::span<const double> coeffic
            "equidistant (fisheye) with 4";
   }
   const size_t used = std::min(known->most, coefficients.size());
-  if (coefficients.size() < known->fewest || !AreZero(coefficients.subspan(used))) {
+  const bool breaks_off = used > 5 && used < known->most;  // k4 k5 k6 are given together
+  if (coefficients.size() < known->fewest || breaks_off || !AreZero(coefficients.subspan(used))) {
     return "expected " +
            (known->fewest == known->most
                 ? std::to_string(known->most)

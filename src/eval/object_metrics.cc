@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/solid_angle.h"
 #include "frame/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
@@ -79,16 +80,23 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
+// The pixels of the undistorted image of a fisheye lens are no measure, so solid angles are.
+double OverlapOf(const Polygon& outline, const Polygon& polygon, const PinholeCamera& camera) {
+  return camera.IsFisheye() ? OverlapOnSphere(camera, outline, polygon)
+                            : IntersectionOverUnion(outline, polygon);
+}
+
 double OverlapWithHull(const Polygon& polygon, const ObservationResult& observation,
-                       const Eigen::AlignedBox2d& image) {
-  const Polygon hull = ClipToBox(observation.hull, image);
+                       const ImagePlane& image) {
+  const Polygon hull = ClipToBox(observation.hull, image.bounds);
   return observation.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
-                            : IntersectionOverUnion(polygon, hull);
+                            : OverlapOf(polygon, hull, image.camera);
 }
 
 double OverlapWithMask(const Polygon& polygon, const ObservationResult& observation,
-                       const Eigen::AlignedBox2d& image) {
-  return IntersectionOverUnion(ClipToBox(WithPositiveArea(observation.contour), image), polygon);
+                       const ImagePlane& image) {
+  return OverlapOf(ClipToBox(WithPositiveArea(observation.contour), image.bounds), polygon,
+                   image.camera);
 }
 
 void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse,
@@ -125,9 +133,9 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid,
   }
   const Polygon polygon =
       VisiblePart(ellipse->Polygon(kEllipseCorners), image.camera, image.bounds);
-  fit.siou = OverlapWithHull(polygon, observation, image.bounds);
+  fit.siou = OverlapWithHull(polygon, observation, image);
   if (has_mask) {
-    fit.siou_mask = OverlapWithMask(polygon, observation, image.bounds);
+    fit.siou_mask = OverlapWithMask(polygon, observation, image);
   }
   MeasureLines(ellipsoid, *ellipse, observation, image.k, fit);
   return fit;

@@ -43,12 +43,13 @@ bool IsRectified(const StereoCalibration& pair) {
          pair.right_from_left.rotation.angularDistance(Eigen::Quaterniond::Identity()) < kAngle;
 }
 
-void CheckCamera(const PinholeCamera& camera, const std::string& name, const std::string& origin) {
+void CheckCamera(PinholeCamera camera, const std::string& name, const std::string& origin) {
   constexpr int64_t kMostPixels = 64'000'000;  // the maps of an image take 8 bytes per pixel
   if (const int64_t pixels = int64_t{camera.width} * camera.height; pixels > kMostPixels) {
     throw InputError(fmt::format("{}: the {} camera has images of {}x{} px, expected at most {} px",
                                  origin, name, camera.width, camera.height, kMostPixels));
   }
+  camera.bf = PinholeCamera().bf;  // is not used
   if (const std::string fault = camera.FindFault(); !fault.empty()) {
     throw InputError(fmt::format("{}: the {} camera: {}", origin, name, fault));
   }

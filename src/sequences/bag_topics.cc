@@ -173,8 +173,9 @@ const IndexedTopic& GivenTopic(const BagIndex& index, const std::string& name, c
 }
 
 // The words in which the names of the topics of a pair differ.
-constexpr std::array<std::array<std::string_view, 2>, 6> kSides = {{{"left", "right"},
+constexpr std::array<std::array<std::string_view, 2>, 7> kSides = {{{"left", "right"},
                                                                     {"infra1", "infra2"},
+                                                                    {"fisheye1", "fisheye2"},
                                                                     {"cam0", "cam1"},
                                                                     {"cam_0", "cam_1"},
                                                                     {"camera0", "camera1"},

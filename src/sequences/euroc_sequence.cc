@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -16,53 +14,95 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/euroc_states.h"
+#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"
-#include "settings/rotation_matrix.h"
+#include "settings/kalibr_camchain.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
-#include "util/shown_text.h"
+#include "settings/yaml_pose.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-void ExpectText(const YamlMap& file, std::string_view key, std::string_view expected) {
-  const std::string text = file.Text(key);
-  if (text != expected) {
-    file.Fail(key, fmt::format("is '{}', expected '{}'; HullSLAM has no other model",
-                               ShowText(text), expected));
-  }
-}
-
-Rigid3 ReadPose(const YamlMap& file, const char* key) {
-  const std::vector<double> data = file.Map(key).Numbers("data", 16, "a 4x4 matrix by rows");
-  const Eigen::Matrix4d matrix =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
-  const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());
-  if (!rotation || matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
-    file.Fail(key, "is not a rigid transform, expected a rotation, a translation and 0 0 0 1");
-  }
-  return {*rotation, matrix.topRightCorner<3, 1>()};
-}
-
 EurocCamera ParseCamera(const YamlMap& file) {
-  ExpectText(file, "camera_model", "pinhole");
-  const std::vector<double> focal = file.Numbers("intrinsics", 4, "fu fv cu cv");
-  const std::vector<double> size = file.Numbers("resolution", 2, "width height");
   EurocCamera camera;
-  camera.calibration.camera = {.fx = focal[0],
-                               .fy = focal[1],
-                               .cx = focal[2],
-                               .cy = focal[3],
-                               .width = file.Pixels("resolution", size[0]),
-                               .height = file.Pixels("resolution", size[1])};
-  ReadLens(file, "distortion_model", "distortion_coefficients", camera.calibration.camera);
+  camera.calibration.camera = ReadPinhole(file, "distortion_coefficients");
   camera.calibration.frames_per_second = file.Number("rate_hz");
-  camera.body_from_cam = ReadPose(file, "T_BS");
+  camera.body_from_cam = ReadRigid3(file, "T_BS");
   return camera;
+}
+
+// The camchain of a sequence; empty if there is none.
+fs::path FindCamchain(const fs::path& root) {
+  std::error_code error;
+  for (const fs::path& folder : {root, root / "dso", root / "..", root / ".." / "dso"}) {
+    if (!fs::is_directory(folder, error)) {
+      continue;
+    }
+    for (const fs::path& file : ListFolder(folder)) {
+      const std::string name = file.filename().string();
+      const bool is_yaml = name.ends_with(".yaml") || name.ends_with(".yml");
+      if (is_yaml && name.find("camchain") != std::string::npos) {
+        return file.lexically_normal();
+      }
+    }
+  }
+  return {};
+}
+
+double RateByStamps(const std::vector<FramePaths>& frames) {
+  return MeanRate(frames, CameraCalibration().frames_per_second);
+}
+
+struct Calibration {
+  EurocCamera left;
+  std::optional<StereoCalibration> pair;  // if it was asked for
+  fs::path file;
+};
+
+Calibration OfSensorFiles(const fs::path& root, bool need_pair) {
+  Calibration calibration;
+  calibration.file = root / "cam0" / "sensor.yaml";
+  calibration.left = ReadEurocCamera(calibration.file);
+  if (need_pair) {
+    const EurocCamera& left = calibration.left;
+    const EurocCamera right = ReadEurocCamera(root / "cam1" / "sensor.yaml");
+    calibration.pair = {.left = left.calibration.camera,
+                        .right = right.calibration.camera,
+                        .right_from_left = Inverse(right.body_from_cam) * left.body_from_cam};
+  }
+  return calibration;
+}
+
+Calibration OfCamchain(const fs::path& file, double frames_per_second, bool need_pair) {
+  const YamlMap camchain(file, "a camchain of Kalibr");
+  Calibration calibration;
+  calibration.file = file;
+  CameraCalibration& left = calibration.left.calibration;
+  left.camera = ReadPinhole(camchain.Map("cam0"), "distortion_coeffs");
+  left.frames_per_second = frames_per_second;
+  MakeSettings(left, file.string());  // checks the numbers
+  calibration.left.body_from_cam = ReadImuFromCam0(camchain);
+  if (need_pair) {
+    calibration.pair = ReadCamchainPair(camchain);
+  }
+  return calibration;
+}
+
+// Nothing if the folder has no calibration.
+std::optional<Calibration> FindCalibration(const fs::path& root, double frames_per_second,
+                                           bool need_pair) {
+  std::error_code error;
+  if (fs::exists(root / "cam0" / "sensor.yaml", error)) {
+    return OfSensorFiles(root, need_pair);
+  }
+  const fs::path camchain = FindCamchain(root);
+  return camchain.empty() ? std::nullopt
+                          : std::optional(OfCamchain(camchain, frames_per_second, need_pair));
 }
 
 void CheckExactColumns(const TextRow& row, size_t count, const char* names) {
@@ -89,8 +129,8 @@ std::vector<double> StampsOf(const std::vector<FramePaths>& frames) {
   return stamps;
 }
 
-void PairImages(const fs::path& root, double frames_per_second, ImageSequence& sequence) {
-  const std::vector<FramePaths> left = ReadImages(root / "cam0", sequence.warnings);
+void PairImages(const fs::path& root, const std::vector<FramePaths>& left, double frames_per_second,
+                ImageSequence& sequence) {
   const std::vector<FramePaths> right = ReadImages(root / "cam1", sequence.warnings);
   std::vector<FramePaths>& pairs = sequence.frames;
   for (const IndexPair& pair :
@@ -105,18 +145,42 @@ void PairImages(const fs::path& root, double frames_per_second, ImageSequence& s
   sequence.unpaired = left.size() - pairs.size();
 }
 
-// Adds the ground truth of the camera, if there is one.
-void AddStates(const fs::path& root, const Rigid3& body_from_cam, ImageSequence& sequence) {
-  const fs::path states = root / "state_groundtruth_estimate0" / "data.csv";
+// Adds the ground truth of the camera, if there is one. The pose of the camera on the body is not
+// known without a calibration.
+void AddStates(const fs::path& root, const std::optional<Rigid3>& body_from_cam,
+               ImageSequence& sequence) {
   std::error_code error;
-  if (fs::exists(states, error)) {
-    try {
-      sequence.converted_groundtruth = ReadEurocStates(states, body_from_cam);
-    } catch (const InputError& fault) {
-      sequence.warnings.push_back(
-          fmt::format("{}; the run goes on without ground truth", fault.what()));
-    }
+  fs::path states = root / "state_groundtruth_estimate0" / "data.csv";
+  if (!fs::exists(states, error)) {
+    states = root / "mocap0" / "data.csv";
   }
+  if (!fs::exists(states, error)) {
+    return;
+  }
+  try {
+    if (!body_from_cam) {
+      throw InputError(states.string() +
+                       ": cannot be used, because the folder has no calibration with the pose of "
+                       "the camera on the body");
+    }
+    sequence.converted_groundtruth = ReadEurocStates(states, *body_from_cam);
+  } catch (const InputError& fault) {
+    sequence.warnings.push_back(
+        fmt::format("{}; the run goes on without ground truth", fault.what()));
+  }
+}
+
+// The images have no depth, so those of 16 bits are images too.
+void LoadImages(ImageSequence& sequence) {
+  constexpr int kMostBits = 16;
+  sequence.load = [](const FramePaths& frame, const PinholeCamera& camera) {
+    ImageInput image{frame.timestamp, ReadGreyImage(frame.image, kMostBits), cv::Mat()};
+    CheckImageSize(frame.image.string(), image.grey, camera);
+    return image;
+  };
+  sequence.load_colour = [](const FramePaths& frame) {
+    return ReadColourImage(frame.image, kMostBits);
+  };
 }
 
 fs::path FindRoot(const fs::path& folder) {
@@ -146,31 +210,45 @@ EurocSequence OpenEurocSequence(const fs::path& folder, const FrameSelection& se
   const fs::path root = FindRoot(folder);
   EurocSequence sequence;
   sequence.images.dataset = "euroc";
-  sequence.camera = ReadEurocCamera(root / "cam0" / "sensor.yaml");
   sequence.images.frames = ReadImages(root / "cam0", sequence.images.warnings);
+  const auto calibration = FindCalibration(root, RateByStamps(sequence.images.frames), false);
+  std::optional<Rigid3> body_from_cam;
+  if (calibration) {
+    sequence.camera = calibration->left;
+    sequence.calibration = calibration->file.string();
+    body_from_cam = calibration->left.body_from_cam;
+  }
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
-  AddStates(root, sequence.camera.body_from_cam, sequence.images);
+  LoadImages(sequence.images);
+  AddStates(root, body_from_cam, sequence.images);
   return sequence;
 }
 
-StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& selection) {
+StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& selection,
+                              std::shared_ptr<const StereoRectifier> rectifier) {
   const fs::path root = FindRoot(folder);
-  const EurocCamera left = ReadEurocCamera(root / "cam0" / "sensor.yaml");
-  const EurocCamera right = ReadEurocCamera(root / "cam1" / "sensor.yaml");
-  const auto rectifier = std::make_shared<const StereoRectifier>(
-      StereoCalibration{.left = left.calibration.camera,
-                        .right = right.calibration.camera,
-                        .right_from_left = Inverse(right.body_from_cam) * left.body_from_cam},
-      root.string());
-  StereoSequence sequence{.images = {}, .calibration = left.calibration};
+  StereoSequence sequence;
   sequence.images.dataset = "euroc_stereo";
+  const std::vector<FramePaths> left = ReadImages(root / "cam0", sequence.images.warnings);
+  const auto calibration = FindCalibration(root, RateByStamps(left), rectifier == nullptr);
+  if (rectifier == nullptr) {
+    if (!calibration) {
+      throw InputError(root.string() +
+                       ": has neither cam0/sensor.yaml nor a camchain of Kalibr, expected the "
+                       "calibration of both cameras");
+    }
+    rectifier =
+        std::make_shared<const StereoRectifier>(*calibration->pair, calibration->file.string());
+  }
   sequence.calibration.camera = rectifier->camera();
-  PairImages(root, left.calibration.frames_per_second, sequence.images);
+  sequence.calibration.frames_per_second =
+      calibration ? calibration->left.calibration.frames_per_second : RateByStamps(left);
+  PairImages(root, left, sequence.calibration.frames_per_second, sequence.images);
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
   LoadPairs(rectifier, sequence.images);
-  AddStates(root, left.body_from_cam, sequence.images);
+  AddStates(root, calibration ? calibration->left.body_from_cam : std::nullopt, sequence.images);
   const fs::path truth = folder / "groundtruth.txt";
   std::error_code error;
   if (!sequence.images.converted_groundtruth && fs::is_regular_file(truth, error)) {

@@ -74,9 +74,10 @@ cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, c
   });
 }
 
-cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, PixelForm form) {
+cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, PixelForm form,
+                   int most_bits = 8) {
   return Decode(path, bytes, form, [&](const ImageHeader& header) {
-    if (header.bits > 8) {
+    if (header.bits > most_bits) {
       Fail(path,
            fmt::format("has {} bits per channel, expected an image with 8 bits, grey or in colour; "
                        "if this is no depth image, it must be converted",
@@ -99,12 +100,12 @@ cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view byt
   return Decode16Bit(name, bytes, "depth");
 }
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path) {
-  return DecodeGreyImage(path, ReadImageFile(path));
+cv::Mat ReadGreyImage(const std::filesystem::path& path, int most_bits) {
+  return Decode8Bit(path, ReadImageFile(path), PixelForm::kGrey, most_bits);
 }
 
-cv::Mat ReadColourImage(const std::filesystem::path& path) {
-  return DecodeColourImage(path, ReadImageFile(path));
+cv::Mat ReadColourImage(const std::filesystem::path& path, int most_bits) {
+  return Decode8Bit(path, ReadImageFile(path), PixelForm::kColour, most_bits);
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) {

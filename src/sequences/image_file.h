@@ -18,12 +18,12 @@ constexpr uint64_t kMostImagePixels = 64'000'000;
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
 // calibration of the camera refers to the pixels as stored. Images with 16 bits per channel are
 // errors too: they may be depth images, and if they use only a few of their bits, they would become
-// black.
-cv::Mat ReadGreyImage(const std::filesystem::path& path);
+// black. With `most_bits` 16, for data sets without depth, the upper 8 bits are taken.
+cv::Mat ReadGreyImage(const std::filesystem::path& path, int most_bits = 8);
 
 // A PNG or JPEG image in colour, CV_8UC3 with blue first; a grey image has three equal channels.
-// Images with 16 bits per channel are errors, as above.
-cv::Mat ReadColourImage(const std::filesystem::path& path);
+// Images with 16 bits per channel are as above.
+cv::Mat ReadColourImage(const std::filesystem::path& path, int most_bits = 8);
 
 // A depth image with unchanged values, CV_16UC1. It is an error if the image does not have 16 bits
 // or has several channels.

@@ -107,6 +107,11 @@ std::vector<FramePaths> TakeFrames(const fs::path& path, ListedFrames list,
   return std::move(list.frames);
 }
 
+double MeanRate(const std::vector<FramePaths>& frames, double fallback) {
+  const double time = frames.empty() ? 0.0 : frames.back().timestamp - frames.front().timestamp;
+  return time > 0.0 ? static_cast<double>(frames.size() - 1) / time : fallback;
+}
+
 void SelectFrames(const fs::path& source, const FrameSelection& selection,
                   ImageSequence& sequence) {
   sequence.available = sequence.frames.size();

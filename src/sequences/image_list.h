@@ -43,6 +43,9 @@ bool AddFrame(const TextRow& row, FramePaths frame, ListedFrames& list);
 std::vector<FramePaths> TakeFrames(const std::filesystem::path& path, ListedFrames list,
                                    std::vector<std::string>& warnings);
 
+// The mean number of images per second; `fallback` for a single stamp.
+double MeanRate(const std::vector<FramePaths>& frames, double fallback);
+
 // Keeps only the selected frames and sets `available` to the number of frames before. The messages
 // name the options --first, --last and --stride.
 void SelectFrames(const std::filesystem::path& source, const FrameSelection& selection,

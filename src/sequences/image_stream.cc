@@ -94,13 +94,6 @@ void AddFrames(const fs::path& file, const std::vector<double>& stamps, ImageSeq
   }
 }
 
-// The mean over all frames, in 1 / s.
-double RateOf(const std::vector<FramePaths>& frames) {
-  return frames.size() < 2 ? kDefaultFramesPerSecond
-                           : static_cast<double>(frames.size() - 1) /
-                                 (frames.back().timestamp - frames.front().timestamp);
-}
-
 ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
   const auto video = std::make_shared<VideoFile>(file);
   std::vector<double> stamps = video->ReadStamps();
@@ -111,7 +104,8 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
     }
   }
   AddFrames(file, stamps, stream.images);
-  stream.frames_per_second = options.frames_per_second.value_or(RateOf(stream.images.frames));
+  stream.frames_per_second =
+      options.frames_per_second.value_or(MeanRate(stream.images.frames, kDefaultFramesPerSecond));
   const size_t repeated = stamps.size() - stream.images.frames.size();
   const std::string turn = video->DescribeTurn();
   stream.images.stamps_note = fmt::format(

@@ -92,6 +92,7 @@ class PngReader {
   void Transform(PixelForm form) {
     const int type = png_get_color_type(png_, info_);
     const bool has_colour = (type & PNG_COLOR_MASK_COLOR) != 0;
+    png_set_strip_16(png_);
     if (type == PNG_COLOR_TYPE_PALETTE) {
       png_set_palette_to_rgb(png_);
     }

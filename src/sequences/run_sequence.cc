@@ -47,17 +47,17 @@ ImageSequence OpenIcl(const Reopening& opening) {
 
 ImageSequence OpenEuroc(const Reopening& opening) { return OpenEurocSequence(opening.path).images; }
 
-ImageSequence OpenEurocStereo(const Reopening& opening) {
-  return OpenEurocPairs(opening.path).images;
-}
-
-ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
-
 // Null without a file.
 std::shared_ptr<const StereoRectifier> RectifierOf(const std::string& calibration) {
   return calibration.empty() ? nullptr
                              : MakeRectifier(calibration, ReadSettings(calibration).camera);
 }
+
+ImageSequence OpenEurocStereo(const Reopening& opening) {
+  return OpenEurocPairs(opening.path, {}, RectifierOf(opening.Choice("calibration"))).images;
+}
+
+ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
 
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");

@@ -12,6 +12,8 @@
 namespace hullslam {
 namespace {
 
+constexpr int kMostBits = 16;  // a pair has no depth images
+
 using Rectifier = std::shared_ptr<const StereoRectifier>;
 
 ImageInput Rectify(const Rectifier& rectifier, double timestamp, const cv::Mat& left,
@@ -49,17 +51,16 @@ cv::Mat Half(const cv::Mat& both, int half) {
 
 void LoadPairs(Rectifier rectifier, ImageSequence& sequence) {
   sequence.load = [rectifier](const FramePaths& frame, const PinholeCamera& camera) {
-    const cv::Mat left = ReadGreyImage(frame.image);
-    const cv::Mat right = ReadGreyImage(frame.right);
+    const cv::Mat left = ReadGreyImage(frame.image, kMostBits);
+    const cv::Mat right = ReadGreyImage(frame.right, kMostBits);
     CheckImageSize(frame.image.string(), left, camera);
     CheckImageSize(frame.right.string(), right, camera);
     return Rectify(rectifier, frame.timestamp, left, right);
   };
-  if (rectifier != nullptr) {
-    sequence.load_colour = [rectifier](const FramePaths& frame) {
-      return rectifier->RectifyLeft(ReadColourImage(frame.image));
-    };
-  }
+  sequence.load_colour = [rectifier](const FramePaths& frame) {
+    const cv::Mat image = ReadColourImage(frame.image, kMostBits);
+    return rectifier != nullptr ? rectifier->RectifyLeft(image) : image;
+  };
   FitMasks(rectifier, sequence);
 }
 

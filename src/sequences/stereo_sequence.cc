@@ -126,12 +126,6 @@ std::pair<std::string, std::string> FindKittiFolders(const fs::path& folder) {
                    SuggestFolder(folder, is_sequence));
 }
 
-double MeanRate(const std::vector<FramePaths>& frames) {
-  constexpr double kDefault = 10.0;  // KITTI's
-  const double time = frames.back().timestamp - frames.front().timestamp;
-  return time > 0.0 ? static_cast<double>(frames.size() - 1) / time : kDefault;
-}
-
 void SetSize(const fs::path& image, PinholeCamera& camera) {
   const cv::Mat first = ReadGreyImage(image);
   camera.width = first.cols;
@@ -175,7 +169,8 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
   sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left, "P" + right);
   sequence.images.frames = ListKittiPairs(folder, folder / ("image_" + left),
                                           folder / ("image_" + right), sequence.images.warnings);
-  sequence.calibration.frames_per_second = MeanRate(sequence.images.frames);
+  constexpr double kRate = 10.0;  // KITTI's
+  sequence.calibration.frames_per_second = MeanRate(sequence.images.frames, kRate);
   SetSize(sequence.images.frames.front().image, sequence.calibration.camera);
   sequence.images.groundtruth = FindKittiTruth(folder);
   SelectFrames(folder, selection, sequence.images);

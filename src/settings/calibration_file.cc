@@ -70,38 +70,20 @@ RecognisedCalibration CalibrationOfMatrix(const YamlMap& file) {
 
 // ---- Kalibr, EuRoC and TUM-VI
 
-PinholeCamera CameraOfLists(const YamlMap& map, const char* coefficients_key) {
-  if (const std::string model = map.Text("camera_model"); model != "pinhole") {
-    map.Fail("camera_model", fmt::format("is '{}', expected 'pinhole'; HullSLAM has no other "
-                                         "projection",
-                                         ShowText(model)));
-  }
-  const std::vector<double> focal = map.Numbers("intrinsics", 4, "fu fv cu cv");
-  const std::vector<double> size = map.Numbers("resolution", 2, "width height");
-  PinholeCamera camera{.fx = focal[0],
-                       .fy = focal[1],
-                       .cx = focal[2],
-                       .cy = focal[3],
-                       .width = map.Pixels("resolution", size[0]),
-                       .height = map.Pixels("resolution", size[1])};
-  ReadLens(map, "distortion_model", coefficients_key, camera);
-  return camera;
-}
-
 RecognisedCalibration CalibrationOfKalibr(const YamlMap& file) {
   int count = 1;
   while (file.Has(fmt::format("cam{}", count))) {
     ++count;
   }
   RecognisedCalibration result;
-  result.calibration.camera = CameraOfLists(file.Map("cam0"), "distortion_coeffs");
+  result.calibration.camera = ReadPinhole(file.Map("cam0"), "distortion_coeffs");
   result.program = fmt::format("a camchain of Kalibr, camera cam0 of {}", count);
   return result;
 }
 
 RecognisedCalibration CalibrationOfEuroc(const YamlMap& file) {
   RecognisedCalibration result;
-  result.calibration.camera = CameraOfLists(file, "distortion_coefficients");
+  result.calibration.camera = ReadPinhole(file, "distortion_coefficients");
   if (file.Has("rate_hz")) {
     result.calibration.frames_per_second = file.Number("rate_hz");
   }

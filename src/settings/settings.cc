@@ -237,6 +237,19 @@ int TumCamera(std::string name) {
   return 0;
 }
 
+// The share of the pixels of the image that are used, 0 to 1, by a sample of them.
+double SeenShare(const PinholeCamera& camera) {
+  constexpr int kSteps = 128;
+  int seen = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Eigen::Vector2d cell((j + 0.5) / kSteps, (i + 0.5) / kSteps);
+      seen += camera.SeesRaw({cell.x() * camera.width, cell.y() * camera.height}) ? 1 : 0;
+    }
+  }
+  return static_cast<double>(seen) / (kSteps * kSteps);
+}
+
 // Empty for a settings file with a lens that needs no mention.
 std::string DescribeCamera(const std::string& program, const PinholeCamera& camera) {
   const bool is_usual =
@@ -244,8 +257,13 @@ std::string DescribeCamera(const std::string& program, const PinholeCamera& came
   if (program.empty() && is_usual) {
     return {};
   }
-  return fmt::format("{}{}x{} px, {}", program.empty() ? "" : program + ": ", camera.width,
-                     camera.height, DescribeLens(camera));
+  const double seen = camera.IsFisheye() ? SeenShare(camera) : 1.0;
+  return fmt::format(
+      "{}{}x{} px, {}{}", program.empty() ? "" : program + ": ", camera.width, camera.height,
+      DescribeLens(camera),
+      seen < 1.0 ? fmt::format("; {:.0f} % of the image is used, up to 80 degrees from the axis",
+                               100.0 * seen)
+                 : "");
 }
 
 std::string FolderName(const fs::path& folder) {

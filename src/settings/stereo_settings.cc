@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "settings/kalibr_camchain.h"
 #include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
+#include "settings/yaml_pose.h"
 
 namespace hullslam {
 namespace {
@@ -17,11 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPose = "Stereo.T_c1_c2";
-
-// The numbers of a matrix of OpenCV by rows.
-std::vector<double> MatrixOf(const YamlMap& file, const std::string& key, size_t count) {
-  return file.Map(key).Numbers("data", count, "a matrix by rows");
-}
 
 Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
                               const Eigen::Matrix3d& matrix) {
@@ -35,7 +32,7 @@ Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
 // ---- ORB-SLAM2
 
 PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
-  const std::vector<double> k = MatrixOf(file, side + ".K", 9);
+  const std::vector<double> k = file.Matrix(side + ".K", 9);
   PinholeCamera camera{.fx = k[0],
                        .fy = k[4],
                        .cx = k[2],
@@ -50,7 +47,7 @@ PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
 }
 
 Eigen::Quaterniond RectifyingRotation(const YamlMap& file, const std::string& key) {
-  const std::vector<double> r = MatrixOf(file, key, 9);
+  const std::vector<double> r = file.Matrix(key, 9);
   return RotationIn(file, key,
                     Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data()));
 }
@@ -61,7 +58,7 @@ StereoCalibration PairOfOrb2(const YamlMap& file) {
   StereoCalibration pair{CameraOf(file, "LEFT"), CameraOf(file, "RIGHT"), {}};
   const Eigen::Quaterniond left = RectifyingRotation(file, "LEFT.R");
   const Eigen::Quaterniond right = RectifyingRotation(file, "RIGHT.R");
-  const std::vector<double> p = MatrixOf(file, "RIGHT.P", 12);
+  const std::vector<double> p = file.Matrix("RIGHT.P", 12);
   if (!(p[0] > 0.0)) {
     file.Fail("RIGHT.P", "has no focal length");
   }
@@ -90,14 +87,15 @@ StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   pair.right.k4 = number("k4");
   pair.right.k5 = number("k5");
   pair.right.k6 = number("k6");
-  const std::string key(kPose);
-  const std::vector<double> t = MatrixOf(file, key, 16);
-  const Eigen::Matrix4d left_from_right =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(t.data());
-  pair.right_from_left =
-      Inverse(Rigid3{RotationIn(file, key, left_from_right.topLeftCorner<3, 3>()),
-                     left_from_right.topRightCorner<3, 1>()});
+  pair.right_from_left = Inverse(ReadRigid3(file, kPose));
   return pair;
+}
+
+// ---- one camera with Camera.bf
+
+// Two cameras with the same lens that look in the same direction.
+StereoCalibration TwinsOf(const PinholeCamera& camera) {
+  return {camera, camera, {Eigen::Quaterniond::Identity(), {-camera.bf / camera.fx, 0.0, 0.0}}};
 }
 
 }  // namespace
@@ -109,12 +107,16 @@ bool IsStereoKey(std::string_view key) {
 
 std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {
   const YamlMap settings(file, "settings");
-  const bool is_orb2 = settings.Has("LEFT.K") || settings.Has("RIGHT.K");
-  const bool is_orb3 = settings.Has("Camera2.fx") || settings.Has(kPose);
-  if (!is_orb2 && !is_orb3) {
-    return std::nullopt;
+  if (settings.Has("LEFT.K") || settings.Has("RIGHT.K")) {
+    return PairOfOrb2(settings);
   }
-  return is_orb2 ? PairOfOrb2(settings) : PairOfOrb3(settings, camera);
+  if (settings.Has("Camera2.fx") || settings.Has(kPose)) {
+    return PairOfOrb3(settings, camera);
+  }
+  if (IsCamchain(settings)) {
+    return ReadCamchainPair(settings);
+  }
+  return camera.IsDistorted() ? std::optional(TwinsOf(camera)) : std::nullopt;
 }
 
 std::shared_ptr<const StereoRectifier> MakeRectifier(const fs::path& file,

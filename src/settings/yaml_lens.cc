@@ -21,4 +21,22 @@ void ReadLens(const YamlMap& map, const char* model_key, const char* coefficient
   }
 }
 
+PinholeCamera ReadPinhole(const YamlMap& map, const char* coefficients_key) {
+  if (const std::string model = map.Text("camera_model"); model != "pinhole") {
+    map.Fail("camera_model", fmt::format("is '{}', expected 'pinhole'; HullSLAM has no other "
+                                         "projection",
+                                         ShowText(model)));
+  }
+  const std::vector<double> focal = map.Numbers("intrinsics", 4, "fu fv cu cv");
+  const std::vector<double> size = map.Numbers("resolution", 2, "width height");
+  PinholeCamera camera{.fx = focal[0],
+                       .fy = focal[1],
+                       .cx = focal[2],
+                       .cy = focal[3],
+                       .width = map.Pixels("resolution", size[0]),
+                       .height = map.Pixels("resolution", size[1])};
+  ReadLens(map, "distortion_model", coefficients_key, camera);
+  return camera;
+}
+
 }  // namespace hullslam

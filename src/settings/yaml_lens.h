@@ -12,4 +12,8 @@ namespace hullslam {
 void ReadLens(const YamlMap& map, const char* model_key, const char* coefficients_key,
               PinholeCamera& camera);
 
+// The camera of a file of Kalibr, EuRoC or TUM-VI: camera_model, intrinsics (fu fv cu cv),
+// resolution, distortion_model and the coefficients. Throws likewise.
+PinholeCamera ReadPinhole(const YamlMap& map, const char* coefficients_key);
+
 }  // namespace hullslam

@@ -176,6 +176,26 @@ std::vector<double> YamlMap::Numbers(std::string_view key, const YAML::Node& lis
   return numbers;
 }
 
+std::vector<double> YamlMap::Matrix(std::string_view key, size_t count) const {
+  constexpr std::string_view kNames = "a matrix by rows";
+  const YAML::Node node = Find(key);
+  if (node.IsMap()) {
+    return Map(key).Numbers("data", count, kNames);
+  }
+  if (!node.IsSequence() || node.size() == 0 || !node[0].IsSequence()) {
+    return Numbers(key, count, kNames);
+  }
+  std::vector<double> numbers;
+  for (const YAML::Node& row : node) {
+    const std::vector<double> of_row = Numbers(key, row);
+    numbers.insert(numbers.end(), of_row.begin(), of_row.end());
+  }
+  if (numbers.size() != count) {
+    Fail(key, fmt::format("has {} numbers, expected {}: {}", numbers.size(), count, kNames));
+  }
+  return numbers;
+}
+
 int YamlMap::Pixels(std::string_view key, double value) const {
   constexpr double kMost = 1e6;
   if (value != std::floor(value) || value < 1.0 || value > kMost) {

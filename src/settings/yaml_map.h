@@ -40,7 +40,9 @@ class YamlMap {
   // `names` says in messages what the numbers are.
   std::vector<double> Numbers(std::string_view key, size_t count, std::string_view names) const;
   std::vector<double> Numbers(std::string_view key) const;  // as many as there are
-  int Pixels(std::string_view key, double value) const;     // a whole number from 1 to 1e6
+  // The numbers of a matrix by rows: one of OpenCV (a map with `data`), a list, or a list of rows.
+  std::vector<double> Matrix(std::string_view key, size_t count) const;
+  int Pixels(std::string_view key, double value) const;  // a whole number from 1 to 1e6
   YamlMap Map(std::string_view key) const;
 
   // Throws InputError "FILE:LINE: KEY what".

@@ -42,6 +42,15 @@ TEST(LensFault, AFisheyeThatFoldsInTheImageIsNamedWithItsRadius) {
   ExpectFault(camera, "Camera.k1 is 'nan'");
 }
 
+TEST(LensFault, AnImageThatGoesOnBehindTheCameraIsNoFisheye) {
+  PinholeCamera camera{.fx = 60.0, .fy = 60.0, .cx = 320.0, .cy = 240.0};
+  camera.lens = LensModel::kKannalaBrandt;
+  ExpectFault(camera, "Camera.fx is '60': the field of view is larger than 360 degrees");
+  ExpectFault(camera, "188.496 px from the principal point");
+  camera.fx = camera.fy = 80.0;  // the rays to the upper border are at 172 degrees
+  EXPECT_EQ(camera.FindFault(), "");
+}
+
 TEST(LensFault, AFisheyeHasFourCoefficients) {
   for (const auto field :
        {&PinholeCamera::p1, &PinholeCamera::p2, &PinholeCamera::k5, &PinholeCamera::k6}) {

@@ -63,6 +63,8 @@ TEST(NamedLens, WhatIsMissingOrUnknownIsSaid) {
   EXPECT_NE(SetLens("radtan", {0.1, 0.2}).expected.find("expected 4 to 5 coefficients"),
             std::string::npos);
   EXPECT_NE(SetLens("rational_polynomial", {0.1, 0, 0, 0, 0, 0, 0, 0, 0.2}).expected, "");
+  EXPECT_NE(SetLens("rational_polynomial", {0.1, 0.2, 0.3, 0.4, 0.5, 0.6}).expected, "");
+  EXPECT_NE(SetLens("opencv", {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}).expected, "");
   EXPECT_NE(SetLens("plumb_bob", {0.1, 0, 0, 0, 0, 0.3}).expected, "");
   EXPECT_NE(SetLens("omnidirectional", {0.1, 0, 0, 0}).expected.find("expected plumb_bob"),
             std::string::npos);

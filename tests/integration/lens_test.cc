@@ -74,6 +74,22 @@ TEST_F(Lens, ADeskThroughAFisheyeIsTrackedWithItsObjects) {
   EXPECT_EQ(RunProgram("make_synthetic", {folder_.path() / "x", "--fisheye", "300"}).exit_code, 2);
 }
 
+TEST_F(Lens, APairOfFisheyeLensesIsRectifiedAndTracked) {
+  constexpr int kPairs = 12;
+  const fs::path desk = folder_.path() / "pairs";
+  const ProgramResult rendered =
+      RunProgram("make_synthetic", {desk, "--frames", std::to_string(kPairs), "--fisheye", "120",
+                                    "--stereo", "0.12", "--quiet"});
+  ASSERT_EQ(rendered.exit_code, 0) << rendered.errors;
+  const ProgramResult result =
+      RunProgram("stereo_folder", {desk, "--masks", desk / "masks", "--output", desk / "out"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("stereo: baseline 0.1200 m"), std::string::npos) << result.output;
+  const auto summary = nlohmann::json::parse(ReadText(desk / "out/summary.json"));
+  EXPECT_EQ(summary["trajectory"]["tracked"], kPairs);
+  EXPECT_LT(summary["trajectory"]["ate_rmse_m"].get<double>(), 0.003);
+}
+
 TEST_F(Lens, ImagesAndMasksAreResized) {
   const RenderedDesk desk(kFrames);
   const nlohmann::json summary = Run(desk.path(), "half", {"--set", "Camera.imageScale=0.75"});

@@ -123,6 +123,79 @@ TEST_F(EurocPairsTest, BothCamerasAreReadAndRectified) {
       << "the rectified camera has the centre of the left one";
 }
 
+// The layout of TUM-VI: one camchain of Kalibr, and the ground truth of a motion capture system.
+// The cameras look along x of the body, 0.1 m apart.
+constexpr const char* kCamchain =
+    "cam0:\n"
+    "  T_cam_imu:\n  - [0.0, -1.0, 0.0, 0.1]\n  - [0.0, 0.0, -1.0, 0.2]\n"
+    "  - [1.0, 0.0, 0.0, 0.3]\n  - [0.0, 0.0, 0.0, 1.0]\n"
+    "  camera_model: pinhole\n"
+    "  distortion_coeffs: [0.0034823894, 0.0007150348, -0.0020532361, 0.0002029367]\n"
+    "  distortion_model: equidistant\n"
+    "  intrinsics: [190.97847715, 190.9733070521, 254.931706, 256.8974428]\n"
+    "  resolution: [512, 512]\n"
+    "cam1:\n"
+    "  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.1]\n  - [0.0, 1.0, 0.0, 0.0]\n"
+    "  - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n"
+    "  camera_model: pinhole\n"
+    "  distortion_coeffs: [0.0034003171, 0.0017662782, -0.0026631257, 0.0003299517]\n"
+    "  distortion_model: equidistant\n"
+    "  intrinsics: [190.4423676, 190.4344384, 252.5999, 254.917239]\n"
+    "  resolution: [512, 512]\n";
+
+class TumViTest : public EurocPairsTest {
+ protected:
+  TumViTest() {
+    std::filesystem::remove(folder_.path() / "mav0/cam0/sensor.yaml");
+    std::filesystem::remove(folder_.path() / "mav0/cam1/sensor.yaml");
+    folder_.Write("mav0/mocap0/data.csv", "#timestamp [ns]\n1400000010500000000,1,2,3,1,0,0,0\n");
+  }
+};
+
+TEST_F(TumViTest, TheCamchainGivesTheCameras) {
+  folder_.Write("dso/camchain.yaml", kCamchain);
+  const EurocSequence left = Open();
+  const EurocCamera camera = left.camera.value();
+  EXPECT_TRUE(camera.calibration.camera.IsFisheye());
+  EXPECT_EQ(camera.calibration.camera.k4, 0.0002029367);
+  EXPECT_EQ(camera.calibration.frames_per_second, 1.0) << "by the stamps";
+  EXPECT_NE(left.calibration.find("dso/camchain.yaml"), std::string::npos);
+  const Rigid3 pose = left.images.converted_groundtruth.value().front().world_from_cam;
+  EXPECT_TRUE((pose * Eigen::Vector3d(0.1, 0.2, 0.3)).isApprox(Eigen::Vector3d(1.0, 2.0, 3.0)));
+
+  const StereoSequence pairs = OpenEurocPairs(folder_.path());
+  const PinholeCamera& rectified = pairs.calibration.camera;
+  EXPECT_NEAR(rectified.bf / rectified.fx, 0.1, 1e-9);
+  EXPECT_FALSE(rectified.IsDistorted());
+  EXPECT_EQ(rectified.width, 512);
+  EXPECT_TRUE(pairs.images.converted_groundtruth.has_value());
+}
+
+TEST_F(TumViTest, BrokenCamchainsAreReported) {
+  const auto expect = [&](const std::string& from, const std::string& to,
+                          const std::vector<std::string>& parts) {
+    folder_.Write("dso/camchain.yaml", Replace(kCamchain, from, to));
+    ExpectInputError([&] { OpenEurocPairs(folder_.path()); }, parts);
+  };
+  expect("cam1:", "cam2:", {"camchain.yaml: cam1 is not given"});
+  expect("  - [1.0, 0.0, 0.0, -0.1]\n", "", {"cam1.T_cn_cnm1 has 12 numbers, expected 16"});
+  expect("  - [1.0, 0.0, 0.0, -0.1]\n", "  - [2.0, 0.0, 0.0, -0.1]\n",
+         {"cam1.T_cn_cnm1 is not a rigid transform"});
+  expect("  - [1.0, 0.0, 0.0, -0.1]\n", "  - [1.0, 0.0, 0.0, x]\n", {"cam1.T_cn_cnm1", "'x'"});
+  expect("T_cn_cnm1", "T_other", {"cam1.T_cn_cnm1 is not given"});
+  expect("-0.0026631257", "-2.6631257", {"the right camera: Camera.k3 is '-2.66", "folds"});
+  expect(", 0.0003299517]", "]", {"cam1.distortion_model is 'equidistant'", "3 number(s)"});
+  expect(", 0.0003299517]", ", .nan]", {"cam1.distortion_coeffs", "'.nan'"});
+}
+
+TEST_F(TumViTest, WithoutCalibrationThereIsNoCameraAndNoTruth) {
+  const EurocSequence left = Open();
+  EXPECT_FALSE(left.camera.has_value());
+  ExpectWarning({"mocap0/data.csv", "no calibration", "without ground truth"});
+  ExpectInputError([&] { OpenEurocPairs(folder_.path()); },
+                   {"neither cam0/sensor.yaml nor a camchain"});
+}
+
 TEST_F(EurocPairsTest, ImagesWithoutPartnerAreLeftOutOrRefused) {
   WriteRight({"1400000010500000000", "1400000012501000000"});
   const StereoSequence sequence = OpenEurocPairs(folder_.path());
@@ -145,7 +218,7 @@ TEST_F(EurocPairsTest, CamerasThatAreNoPairAreRefused) {
 }
 
 TEST_F(EurocSequenceTest, TheSensorFileGivesTheCamera) {
-  const EurocCamera read = Open().camera;
+  const EurocCamera read = Open().camera.value();
   const PinholeCamera& camera = read.calibration.camera;
   EXPECT_EQ(camera.Matrix()(0, 0), 458.654);
   EXPECT_EQ(camera.Matrix()(1, 1), 457.296);
@@ -208,9 +281,6 @@ TEST_F(EurocSequenceTest, BrokenListsAreReported) {
 }
 
 TEST_F(EurocSequenceTest, MissingFilesAreReported) {
-  std::filesystem::remove(folder_.path() / "mav0/cam0/sensor.yaml");
-  ExpectError({"cam0/sensor.yaml", "No such file"});
-  WriteSensor(kSensor);
   std::filesystem::remove(folder_.path() / "mav0/cam0/data.csv");
   ExpectError({"cam0/data.csv", "No such file"});
   const TemporaryFolder empty;

@@ -65,11 +65,19 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
   ExpectInputError([&] { sequence.load(frame, other); }, {"left.png", "80x60", "40x60"});
 }
 
+// TUM-VI has images of 16 bits.
 TEST(StereoLoading, RectifiedPairsNeedNothing) {
   ImageSequence sequence;
   LoadPairs(nullptr, sequence);
+  const TemporaryFolder folder;
+  const cv::Mat image(60, 80, CV_16UC1, cv::Scalar(0x12F0));
+  FramePaths frame{1.0, folder.path() / "left.png"};
+  frame.right = frame.image;
+  cv::imwrite(frame.image.string(), image);
+  const PinholeCamera camera{.fx = 60.0, .fy = 60.0, .width = 80, .height = 60};
+  EXPECT_EQ(sequence.load(frame, camera).right.at<uint8_t>(30, 40), 0x12);
+  EXPECT_EQ(sequence.load_colour(frame).at<cv::Vec3b>(30, 40), cv::Vec3b(0x12, 0x12, 0x12));
   EXPECT_EQ(sequence.fit_mask, nullptr);
-  EXPECT_EQ(sequence.load_colour, nullptr);
   EXPECT_TRUE(sequence.choices.empty());
 }
 

@@ -365,7 +365,7 @@ TEST_F(Settings, ACalibrationOfAnotherProgramIsReadAndNamed) {
   EXPECT_EQ(options.camera.bf, 20.0);
   EXPECT_EQ(report.camera_note,
             "a camchain of Kalibr, camera cam0 of 1: 512x512 px, with a fisheye lens "
-            "(Kannala-Brandt)");
+            "(Kannala-Brandt); 83 % of the image is used, up to 80 degrees from the axis");
 }
 
 TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "settings/stereo_settings.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -118,6 +119,33 @@ TEST_F(StereoSettings, BrokenFilesAreRefusedWithLineAndKey) {
   expect(Replaced("LEFT.width: 752", "LEFT.width: 752000"),
          {"left camera", "752000x480", "64000000"});
   expect(Replaced("457.587, 0.0", "0.0, 0.0"), {"right camera", "Camera.fx"});
+}
+
+TEST_F(StereoSettings, ACamchainOfKalibrIsAPair) {
+  const std::string lens =
+      "  camera_model: pinhole\n  intrinsics: [190.0, 190.0, 256.0, 256.0]\n"
+      "  resolution: [512, 512]\n  distortion_model: equidistant\n"
+      "  distortion_coeffs: [0.003, 0.0007, -0.002, 0.0002]\n";
+  const auto pose = [](double x) {
+    return fmt::format("  T_cam_imu: [[1, 0, 0, {}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n",
+                       x);
+  };
+  const auto rectifier = Read("cam0:\n" + lens + pose(0.02) + "cam1:\n" + lens + pose(-0.08));
+  ASSERT_NE(rectifier, nullptr);
+  EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.1, 1e-9);
+  ExpectInputError([&] { Read("cam0:\n" + lens); }, {"c.yaml: cam1 is not given"});
+}
+
+// The images of a fisheye lens are never rectified.
+TEST_F(StereoSettings, OneLensWithABaselineIsThatOfBothCameras) {
+  const std::string pinhole =
+      "Camera.fx: 200\nCamera.fy: 200\nCamera.cx: 320\nCamera.cy: 240\n"
+      "Camera.bf: 20\n";
+  EXPECT_EQ(Read(pinhole), nullptr);
+  const auto rectifier = Read(pinhole + "Camera.type: \"KannalaBrandt8\"\n");
+  ASSERT_NE(rectifier, nullptr);
+  EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.1, 1e-9);
+  EXPECT_FALSE(rectifier->camera().IsDistorted());
 }
 
 }  // namespace

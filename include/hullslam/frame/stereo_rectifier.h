@@ -22,8 +22,9 @@ struct StereoCalibration {
 // OpenCV). The rectified images have the size of the images as read.
 class StereoRectifier {
  public:
-  // Throws InputError that begins with `origin` for a pair that cannot be rectified: sizes that
-  // differ, no baseline, one that is not horizontal, or a right camera that is left of the other.
+  // Throws InputError that begins with `origin` for a pair that cannot be rectified: a camera with
+  // a fault (PinholeCamera::FindFault), sizes that differ, no baseline, one that is not horizontal,
+  // or a right camera that is left of the other.
   StereoRectifier(const StereoCalibration& calibration, const std::string& origin);
 
   // The camera of the rectified left image, without distortion. bf is the baseline times fx.

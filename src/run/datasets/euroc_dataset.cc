@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hullslam/sequences/euroc_sequence.h"
+#include "hullslam/util/error.h"
 #include "run/load_settings.h"
 
 namespace hullslam {
@@ -12,9 +13,10 @@ namespace {
 class EurocDataset final : public Dataset {
  public:
   DatasetHelp Help(SensorKind /*sensor*/) const override {
-    return {.sequence = "folder with mav0, in the format ASL",
-            .settings = "default: the camera of cam0/sensor.yaml in SEQUENCE",
-            .groundtruth = "of the camera; default: state_groundtruth_estimate0 in SEQUENCE"};
+    return {
+        .sequence = "folder with mav0, in the format ASL",
+        .settings = "default: the camera of cam0/sensor.yaml or a camchain of Kalibr in SEQUENCE",
+        .groundtruth = "of the camera; default: state_groundtruth_estimate0 or mocap0 in SEQUENCE"};
   }
 
   DatasetInput Open(const RunArguments& arguments) override {
@@ -24,10 +26,15 @@ class EurocDataset final : public Dataset {
               .sequence = std::move(sequence.images),
               .notes = {Describe(GivenSettings(arguments.settings))}};
     }
-    return {.settings = LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
+    if (!sequence.camera) {
+      throw InputError(arguments.sequence.string() +
+                       ": has neither cam0/sensor.yaml nor a camchain of Kalibr, expected one of "
+                       "them or --settings FILE");
+    }
+    return {.settings = LoadSettings(sequence.camera->calibration, arguments.sequence.string(),
                                      arguments.preset, arguments.overrides),
             .sequence = std::move(sequence.images),
-            .notes = {Describe({"cam0/sensor.yaml", "the camera of the sequence"})}};
+            .notes = {Describe({sequence.calibration, "the camera of the sequence"})}};
   }
 };
 

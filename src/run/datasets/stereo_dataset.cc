@@ -57,23 +57,35 @@ DatasetInput Finish(const RunArguments& arguments, LoadedSettings settings, Imag
 // A data set whose files have the calibration of the pair.
 class CalibratedPairs final : public Dataset {
  public:
-  using Opener = std::function<StereoSequence(const std::filesystem::path&, const FrameSelection&)>;
+  // The rectifier is that of --settings; null if they do not describe both cameras.
+  using Opener = std::function<StereoSequence(const std::filesystem::path&, const FrameSelection&,
+                                              std::shared_ptr<const StereoRectifier> rectifier)>;
   CalibratedPairs(DatasetHelp help, std::string source, Opener open)
       : help_(std::move(help)), source_(std::move(source)), open_(std::move(open)) {}
 
   DatasetHelp Help(SensorKind /*sensor*/) const override { return help_; }
 
   DatasetInput Open(const RunArguments& arguments) override {
-    StereoSequence sequence = open_(arguments.sequence, arguments.selection);
+    std::optional<LoadedSettings> given;
+    std::shared_ptr<const StereoRectifier> rectifier;
+    if (!arguments.settings.empty()) {
+      given = LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
+      rectifier = MakeRectifier(arguments.settings, given->options.camera);
+    }
+    StereoSequence sequence = open_(arguments.sequence, arguments.selection, rectifier);
     const SystemOptions own = MakeSettings(sequence.calibration, arguments.sequence.string());
-    LoadedSettings settings =
-        arguments.settings.empty()
-            ? LoadSettings(sequence.calibration, arguments.sequence.string(), arguments.preset,
-                           arguments.overrides)
-            : LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
-    settings.options.camera = own.camera;  // the images are rectified to this camera
-    const std::string note = Describe({source_, "the cameras of the sequence"});
-    return Finish(arguments, std::move(settings), std::move(sequence.images), {note});
+    if (!given) {
+      given = LoadSettings(sequence.calibration, arguments.sequence.string(), arguments.preset,
+                           arguments.overrides);
+    }
+    given->options.camera = own.camera;  // the images are rectified to this camera
+    std::string note = Describe({source_, "the cameras of the sequence"});
+    if (rectifier != nullptr) {
+      note = Describe(GivenSettings(arguments.settings));
+      sequence.images.choices["calibration"] =
+          std::filesystem::absolute(arguments.settings).string();
+    }
+    return Finish(arguments, std::move(*given), std::move(sequence.images), {note});
   }
 
  private:
@@ -190,10 +202,11 @@ std::unique_ptr<Dataset> MakeStereoBagDataset() { return std::make_unique<Stereo
 std::unique_ptr<Dataset> MakeEurocStereoDataset() {
   return std::make_unique<CalibratedPairs>(
       DatasetHelp{.sequence = "folder with mav0, in the format ASL, with cam0 and cam1",
-                  .settings = "default: the cameras of the two sensor.yaml in SEQUENCE",
-                  .groundtruth = "of the left camera; default: "
-                                 "state_groundtruth_estimate0 or groundtruth.txt in SEQUENCE"},
-      "cam0/sensor.yaml and cam1/sensor.yaml", OpenEurocPairs);
+                  .settings = "default: the cameras of the two sensor.yaml, or of a camchain of "
+                              "Kalibr, in SEQUENCE",
+                  .groundtruth = "of the left camera; default: state_groundtruth_estimate0, mocap0 "
+                                 "or groundtruth.txt in SEQUENCE"},
+      "two sensor.yaml or a camchain", OpenEurocPairs);
 }
 
 std::unique_ptr<Dataset> MakeKittiDataset() {
@@ -203,7 +216,11 @@ std::unique_ptr<Dataset> MakeKittiDataset() {
                   .settings = "default: the cameras of calib.txt in SEQUENCE",
                   .groundtruth = "default: groundtruth.txt or poses.txt in SEQUENCE, or "
                                  "poses/NAME.txt of the data set"},
-      "calib.txt", OpenKittiPairs);
+      "calib.txt",
+      [](const std::filesystem::path& folder, const FrameSelection& selection,
+         const std::shared_ptr<const StereoRectifier>& /*rectifier*/) {
+        return OpenKittiPairs(folder, selection);
+      });
 }
 
 std::unique_ptr<Dataset> MakeStereoFolderDataset() { return std::make_unique<StereoFolder>(); }
