@@ -245,6 +245,7 @@ def prepare(arguments):
 
 
 def main(words=None):
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # it also prints its exceptions
     parser = parser_of(__doc__)
     parser.add_argument("input", type=pathlib.Path, metavar="IN.onnx")
     parser.add_argument("output", type=pathlib.Path, metavar="OUT.onnx")

@@ -64,7 +64,7 @@ class _ORBextractor:
     scaleFactor: float
     """ratio of the sizes of neighbouring levels of the image pyramid (a number above 1 to 2; default 1.2)"""
     subpixel: bool
-    """refine the positions of features within a pixel of their level (true or false (1 or 0); default false)"""
+    """refine the positions of features within a pixel of their level (true or false (1 or 0); default true)"""
 
 class _depth:
     adjustment_pixel_sigma: float

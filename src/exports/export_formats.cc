@@ -24,12 +24,16 @@ std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
   const ExportCamera view(input.map->sensor.camera);
   ExportFolder folder(options.output);
   WriteImages(images, view, input, folder);
+  const bool are_pairs = input.map->sensor.kind == SensorKind::kStereo;
+  if (are_pairs) {
+    WriteRightImages(images, view, input, folder);
+  }
   std::vector<Colour> colours;
   for (const ColouredPoint& point : input.model.points) {
     colours.push_back(point.colour);
   }
-  const ColmapModel model =
-      MakeColmapModel(input.map->map, input.map->located, colours, images, view);
+  const ColmapModel model = MakeColmapModel(input.map->map, input.map->located, colours, images,
+                                            view, are_pairs ? input.map->sensor.baseline() : 0.0);
   for (FileContent& file : options.as_text ? FormatColmapText(model) : FormatColmapBinary(model)) {
     file.name = "sparse/0/" + file.name;
     folder.Write(file);

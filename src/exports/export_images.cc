@@ -45,7 +45,7 @@ std::optional<double> FindDepthUnits(const std::vector<KeyframeImage>& images,
 void WriteDepths(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder, std::vector<NerfstudioFrame>& frames) {
   const auto has_depth = [](const KeyframeImage& image) { return !image.frame.depth.empty(); };
-  if (input.map->sensor.IsMonocular()) {
+  if (input.map->sensor.kind != SensorKind::kRgbd) {
     return;
   }
   const std::optional<double> units = std::all_of(images.begin(), images.end(), has_depth)
@@ -151,6 +151,15 @@ void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& v
                   EncodeImage(view.Undistort(raw, cv::INTER_CUBIC), ".png")});
   }
   UseColours(colours, input.model);
+}
+
+void WriteRightImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+                      const ExportInput& input, ExportFolder& folder) {
+  for (const KeyframeImage& image : images) {
+    const ImageInput pair = input.sequence->load(image.frame, input.map->sensor.camera);
+    folder.Write({"images/" + image.name + "_right.png",
+                  EncodeImage(view.Undistort(pair.right, cv::INTER_CUBIC), ".png")});
+  }
 }
 
 std::vector<NerfstudioFrame> WriteDepthsAndMasks(const std::vector<KeyframeImage>& images,

@@ -29,6 +29,10 @@ void ColourPoints(ExportInput& input);
 void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder);
 
+// Writes the undistorted right images "images/NAME_right.png" of a stereo camera, in grey.
+void WriteRightImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+                      const ExportInput& input, ExportFolder& folder);
+
 // Writes "depths/NAME.png" for each image of an RGB-D run, and "masks/NAME.png", which is 0 where
 // things of these classes are and 255 elsewhere, if the run had masks of them. nerfstudio expects
 // depths and masks for all images or for none. Returns the frames for transforms.json.

@@ -17,6 +17,9 @@ namespace hullslam {
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size);
 
+// Whether the raw position of a keypoint is in the mask, which may be empty.
+bool IsMasked(const cv::Mat& mask, const RawKeypoint& keypoint);
+
 // Removes the keypoints whose raw position is in the mask, and their descriptors.
 void RemoveMasked(const cv::Mat& mask, std::vector<RawKeypoint>& keypoints,
                   std::vector<Descriptor>& descriptors);

@@ -48,6 +48,10 @@ class FrameBuilder {
   // `input` is BuiltFrame::awaiting. May be called while another thread calls Build.
   void AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
                      TaskRunner& runner, BuiltFrame& built);
+  // The keypoints that Build would have removed with these masks, by increasing index. May be
+  // called while another thread calls Build.
+  std::vector<uint32_t> DynamicKeypoints(std::span<const InstanceMask> masks,
+                                         const DetectionInput& input) const;
 
  private:
   // `image` has depth of its own size.

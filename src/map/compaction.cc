@@ -14,13 +14,12 @@ namespace hullslam {
 namespace {
 
 template <typename IdType>
-std::vector<IdType> ValidOnes(const std::vector<IdType>& ids) {
-  std::vector<IdType> valid;
-  valid.reserve(static_cast<size_t>(
-      std::count_if(ids.begin(), ids.end(), [](IdType id) { return id.IsValid(); })));
-  std::copy_if(ids.begin(), ids.end(), std::back_inserter(valid),
-               [](IdType id) { return id.IsValid(); });
-  return valid;
+std::vector<IdType> Select(const std::vector<IdType>& ids, std::span<const uint32_t> indices) {
+  std::vector<IdType> selected;
+  selected.reserve(indices.size());
+  std::ranges::transform(indices, std::back_inserter(selected),
+                         [&](uint32_t index) { return ids.at(index); });
+  return selected;
 }
 
 auto& ObservationBy(KeyframeId keyframe, auto& observations) {
@@ -34,20 +33,24 @@ auto& ObservationBy(KeyframeId keyframe, auto& observations) {
 }  // namespace
 
 void CompactKeyframe(Map& map, KeyframeId id) {
+  const Keyframe& keyframe = map.keyframes().At(id);
+  ReduceKeyframe(map, id, IndicesOfValid(keyframe.landmarks), IndicesOfValid(keyframe.objects));
+}
+
+void ReduceKeyframe(Map& map, KeyframeId id, std::span<const uint32_t> keypoints,
+                    std::span<const uint32_t> detections) {
   Keyframe& keyframe = map.MutableKeyframe(id);
-  const std::vector<uint32_t> keypoints = IndicesOfValid(keyframe.landmarks);
-  const std::vector<uint32_t> detections = IndicesOfValid(keyframe.objects);
   map.ReplaceFrame(id, ReduceFrame(*keyframe.frame, keypoints, detections));
-  keyframe.landmarks = ValidOnes(keyframe.landmarks);
-  keyframe.objects = ValidOnes(keyframe.objects);
+  keyframe.landmarks = Select(keyframe.landmarks, keypoints);
+  keyframe.objects = Select(keyframe.objects, detections);
   keyframe.covisible.shrink_to_fit();
   for (uint32_t i = 0; i < keypoints.size(); ++i) {
-    if (keypoints[i] != i) {
+    if (keypoints[i] != i && keyframe.landmarks[i].IsValid()) {
       ObservationBy(id, map.MutableLandmark(keyframe.landmarks[i]).observations).keypoint = i;
     }
   }
   for (uint32_t i = 0; i < detections.size(); ++i) {
-    if (detections[i] != i) {
+    if (detections[i] != i && keyframe.objects[i].IsValid()) {
       ObservationBy(id, map.MutableObject(keyframe.objects[i]).observations).detection = i;
     }
   }

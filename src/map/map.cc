@@ -52,7 +52,11 @@ Map::Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary)
       correction_count_(tables.correction_count) {
   for (const auto& [id, keyframe] : keyframes_) {
     index_.Add(id, VectorOf(*keyframe.frame));
+    NoteFrame(keyframe.frame->id, id);
     CountInIsland(keyframe.island);
+  }
+  for (const auto& [id, culled] : culled_) {
+    NoteFrame(culled.frame, id);
   }
 }
 
@@ -67,6 +71,7 @@ Map Map::Snapshot() {
   copy.replaced_landmarks_ = replaced_landmarks_;
   copy.replaced_objects_ = replaced_objects_;
   copy.culled_ = culled_.Snapshot();
+  copy.keyframe_of_frame_ = keyframe_of_frame_.Snapshot();
   copy.sessions_ = sessions_;
   copy.island_sizes_ = island_sizes_;
   copy.islands_joined_ = islands_joined_;
@@ -86,15 +91,7 @@ void Map::BeginSession(Session session) {
   sessions_.push_back(std::move(session));
 }
 
-FrameId Map::NextFrame() const {
-  const uint32_t count = keyframes_.NextId().value;
-  if (count == 0) {
-    return FrameId(0);
-  }
-  const KeyframeId last(count - 1);  // keyframes are made in the order of their frames
-  const Keyframe* keyframe = keyframes_.Find(last);
-  return FrameId((keyframe != nullptr ? keyframe->frame->id : culled_.At(last).frame).value + 1);
-}
+FrameId Map::NextFrame() const { return keyframe_of_frame_.NextId(); }
 
 int Map::ObservationWeight(const Frame& frame, uint32_t keypoint) {
   return frame.features.right_u[keypoint] >= 0.0f ? 2 : 1;
@@ -113,6 +110,7 @@ KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& ca
   keyframe.cam_from_world = cam_from_world;
   keyframe.island = island;
   CountInIsland(island);
+  NoteFrame(keyframe.frame->id, keyframes_.NextId());
   index_.Add(keyframes_.NextId(), VectorOf(*keyframe.frame));
   return keyframes_.Insert(std::move(keyframe));
 }
@@ -313,6 +311,12 @@ void Map::MoveToIsland(KeyframeId keyframe, IslandId island) {
   CountInIsland(island);
 }
 
+void Map::NoteFrame(FrameId frame, KeyframeId keyframe) {
+  if (frame.IsValid()) {
+    keyframe_of_frame_.Put(frame, keyframe);
+  }
+}
+
 void Map::CountInIsland(IslandId island) {
   if (island.value >= island_sizes_.size()) {
     island_sizes_.resize(island.value + 1, 0);
@@ -355,24 +359,8 @@ double Map::ScaleOf(KeyframeId keyframe) const {
 }
 
 std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {
-  // Keyframes are made in the order of their frames, and every id is that of a keyframe, culled or
-  // not. So this is a binary search.
-  uint32_t first = 0;
-  uint32_t last = keyframes_.NextId().value;
-  while (first < last) {
-    const KeyframeId middle(first + (last - first) / 2);
-    const Keyframe* keyframe = keyframes_.Find(middle);
-    const FrameId candidate = keyframe != nullptr ? keyframe->frame->id : culled_.At(middle).frame;
-    if (candidate == frame) {
-      return middle;
-    }
-    if (candidate < frame) {
-      first = middle.value + 1;
-    } else {
-      last = middle.value;
-    }
-  }
-  return std::nullopt;
+  const KeyframeId* const keyframe = keyframe_of_frame_.Find(frame);
+  return keyframe != nullptr ? std::optional(*keyframe) : std::nullopt;
 }
 
 KeyframeId Map::NearestAlive(KeyframeId keyframe) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,19 +30,20 @@ uint32_t CountKeyframes(const MapTables& tables) {
   return std::max(tables.keyframes.NextId().value, tables.culled.NextId().value);
 }
 
-// Map::KeyframeOfFrame searches in all keyframes by the frame.
+// Map::KeyframeOfFrame finds one keyframe by its frame.
 void CheckFrames(const MapTables& tables) {
   constexpr uint32_t kMostFrames = uint32_t{1} << 31;  // later sessions need ids too
   FrameId last;
+  std::set<FrameId> frames;
   for (uint32_t i = 0; i < CountKeyframes(tables); ++i) {
     const KeyframeId id(i);
     const Keyframe* keyframe = tables.keyframes.Find(id);
     const CulledKeyframe* culled = tables.culled.Find(id);
     Require((keyframe == nullptr) != (culled == nullptr), id, "is missing or is twice there");
     const FrameId frame = keyframe != nullptr ? keyframe->frame->id : culled->frame;
-    Require(frame.value < kMostFrames && (!last.IsValid() || last < frame), id,
-            "has a frame that is not later than that of the keyframe before");
-    last = frame;
+    Require(frame.value < kMostFrames && frames.insert(frame).second, id,
+            "has a frame that is too late or is that of another keyframe");
+    last = last.IsValid() ? std::max(last, frame) : frame;
   }
   const Session* before = nullptr;
   for (const Session& session : tables.sessions) {

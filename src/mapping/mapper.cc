@@ -15,6 +15,7 @@
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
 #include "mapping/landmark_fusion.h"
+#include "mapping/late_detections.h"
 #include "mapping/old_keyframes.h"
 #include "objects/known_sizes.h"
 #include "optim/bundle_adjustment.h"
@@ -117,20 +118,15 @@ bool Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   return outcome.is_applied;
 }
 
-bool Mapper::Apply(const LateDetections& late, const Cancellation*) {
+bool Mapper::Apply(const LateDetections& late, const Cancellation* hurry) {
   const std::optional<KeyframeId> keyframe = map_.KeyframeOfFrame(late.frame);
-  if (!keyframe || !map_.keyframes().Contains(*keyframe)) {
+  if (!keyframe) {
+    const std::optional<KeyframeRequest> request = RequestLateKeyframe(map_, late);
+    return request && Apply(*request, hurry);
+  }
+  if (!map_.keyframes().Contains(*keyframe) || !AddLateDetections(map_, *keyframe, late)) {
     return false;
   }
-  Keyframe& observer = map_.MutableKeyframe(*keyframe);
-  // An old keyframe keeps only some of its keypoints (CompactKeyframe).
-  if (!observer.frame->detections.empty() || observer.frame->features.size() != late.keypoints) {
-    return false;
-  }
-  auto frame = std::make_shared<Frame>(*observer.frame);
-  frame->detections = late.detections;
-  observer.objects.assign(frame->detections.size(), ObjectId());
-  observer.frame = std::move(frame);
   if (object_options_.enabled) {
     const ScopedTimer timer(times_, "map_objects");
     object_mapper_.Process(map_, *keyframe);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "costs/both_views.h"
 #include "costs/depth_anchor.h"
 #include "costs/make_object_cost.h"
 #include "costs/pixel_error.h"
@@ -46,7 +47,8 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera,
                                                const ResolvedObservation& observation,
                                                std::span<const SilhouetteLine> lines,
                                                const Ellipsoid& ellipsoid, double misfit_px,
-                                               const ObjectConstraintOptions& options) {
+                                               const ObjectConstraintOptions& options,
+                                               std::span<const SilhouetteLine> right_lines) {
   const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
   auto sigma = ResidualOfPixelError(options.residual, camera, observation.cam_from_world, ellipsoid,
                                     sigma_px);
@@ -69,6 +71,12 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera,
       MakeObjectCost(options.residual, camera, *observation.detection, lines, *sigma, projected);
   if (cost == nullptr) {
     return nullptr;
+  }
+  if (!right_lines.empty() && TakesLines(options.residual)) {
+    cost = std::make_unique<BothViewsCost>(
+        std::move(cost),
+        MakeObjectCost(options.residual, camera, *view.detection, right_lines, *sigma),
+        camera.bf / camera.fx);
   }
   const double scale = std::max(options.loss_scale, options.min_loss_px / sigma_px);
   return MakeRobust(std::move(cost), MakeLoss(options.loss, scale), options.max_effective_lines);
@@ -95,8 +103,10 @@ ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera,
                                       const ResolvedObservation& observation,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
-                                      const ObjectConstraintOptions& options) {
-  return {.silhouette = MakeSilhouette(camera, observation, lines, ellipsoid, misfit_px, options),
+                                      const ObjectConstraintOptions& options,
+                                      std::span<const SilhouetteLine> right_lines) {
+  return {.silhouette = MakeSilhouette(camera, observation, lines, ellipsoid, misfit_px, options,
+                                       right_lines),
           .depth = MakeDepth(observation, options.depth)};
 }
 

@@ -28,12 +28,15 @@ struct ObjectConstraint {
 // observation's pose and `ellipsoid`, and rho is the loss with the scale max(loss_scale,
 // min_loss_px / that hypot), in sigmas. With SigmaUnit::kResidual, sigma = sigma_px instead. Depth
 // points add the same kind of sum with DepthAnchorCost. `lines` are the lines of the observation's
-// detection, possibly compensated.
+// detection, possibly compensated. `right_lines`, those of the right image, are more rows of the
+// same detection: their errors are those of its lines, so they do not make it count as more
+// independent lines.
 ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera,
                                       const ResolvedObservation& observation,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
-                                      const ObjectConstraintOptions& options);
+                                      const ObjectConstraintOptions& options,
+                                      std::span<const SilhouetteLine> right_lines = {});
 
 // The prior that keeps an object near a shape (QuadricPriorCost). Its parameters are the object's
 // pose and log half axes.

@@ -35,8 +35,9 @@ class RefinementProblem {
     bool has_depth = false;
     for (const ResolvedObservation& observation : observations) {
       poses_.push_back(ToBlock(observation.cam_from_world));
-      ObjectConstraint constraint = MakeObjectConstraint(
-          sensor.camera, observation, observation.detection->lines, ellipsoid, misfit_px, options);
+      ObjectConstraint constraint =
+          MakeObjectConstraint(sensor.camera, observation, observation.detection->lines, ellipsoid,
+                               misfit_px, options, observation.detection->right_lines);
       Add(std::move(constraint.silhouette), poses_.back());
       Add(std::move(constraint.depth), poses_.back());
       has_depth = has_depth || !observation.detection->points.empty();

@@ -77,8 +77,9 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
   const PoseBlock camera = ToBlock(keyframe.cam_from_world);
   Object& object = objects_.back();
   object.has_depth |= !detection.points.empty();
-  ObjectConstraint constraint = MakeObjectConstraint(camera_, observation, detection.lines,
-                                                     object.before, misfit_px, options_.constraint);
+  ObjectConstraint constraint =
+      MakeObjectConstraint(camera_, observation, detection.lines, object.before, misfit_px,
+                           options_.constraint, detection.right_lines);
   auto moving_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kMoving);
   for (auto* const cost : {&constraint.silhouette, &constraint.depth}) {
     if (*cost == nullptr || !IsDefined(**cost, camera, object.pose, object.log_axes)) {

@@ -17,7 +17,7 @@ ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
     const ResolvedObservation observation{KeyframeId(), start, object.detection};
     Term& term = terms_[i];
     term.cost = MakeObjectConstraint(camera, observation, object.lines, object.ellipsoid,
-                                     object.misfit_px, options.constraint)
+                                     object.misfit_px, options.constraint, object.right_lines)
                     .silhouette;
     if (term.cost == nullptr) {
       continue;

@@ -49,7 +49,10 @@ struct FinishedRun {
   // it. Absent if it is not found there, or if `path` is empty.
   std::optional<std::filesystem::path> Find(const std::string& path) const;
 
+  // The poses of the camera whose images OpenRunSequence() gives. Those in the files are of the
+  // camera as read, if the run has rectified the images.
   Trajectory ReadPoses() const;          // of all tracked frames
+  Trajectory ReadPosesAsRead() const;    // the same as they are in the file
   Trajectory ReadKeyframePoses() const;  // of all sessions
   // The landmarks of map.ply. Absent, like the others, if the run has no such file.
   std::optional<PlyPoints> ReadLandmarkPoints() const;

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <initializer_list>
+#include <new>
 #include <string>
 
 #include "hullslam/util/error.h"
@@ -38,6 +39,8 @@ int RunMain(const Run& run, int argc, char** argv) {
   } catch (const InputError& error) {
     PrintFailure(error.what());
     code = kBadInput;
+  } catch (const std::bad_alloc&) {
+    PrintFailure("there is not enough memory");
   } catch (const std::exception& error) {
     PrintFailure(error.what());
   }

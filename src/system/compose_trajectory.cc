@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/compose_trajectory.h"
 
+#include <map>
 #include <optional>
 
 #include "map/islands.h"
@@ -26,6 +27,17 @@ std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFra
     return map.CamFromWorld(*frame.from_keyframe);
   }
   return std::nullopt;
+}
+
+// The keyframes of the main island. Those of late masks have larger ids than keyframes of later
+// frames.
+std::map<FrameId, const Keyframe*> KeyframesByFrame(const Map& map) {
+  std::map<FrameId, const Keyframe*> keyframes;
+  for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {
+    const Keyframe& keyframe = map.keyframes().At(id);
+    keyframes.emplace(keyframe.frame->id, &keyframe);
+  }
+  return keyframes;
 }
 
 }  // namespace
@@ -65,19 +77,17 @@ void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFr
 
 Trajectory KeyframeTrajectory(const Map& map) {
   Trajectory trajectory;
-  for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {
-    const Keyframe& keyframe = map.keyframes().At(id);
-    trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
+  for (const auto& [frame, keyframe] : KeyframesByFrame(map)) {
+    trajectory.push_back({keyframe->frame->timestamp, Inverse(keyframe->cam_from_world)});
   }
   return trajectory;
 }
 
 Trajectory KeyframeTrajectory(const Map& map, size_t session) {
   Trajectory trajectory;
-  for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {
-    const Keyframe& keyframe = map.keyframes().At(id);
-    if (SessionNumber(map.sessions(), keyframe.frame->id) == session) {
-      trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
+  for (const auto& [frame, keyframe] : KeyframesByFrame(map)) {
+    if (SessionNumber(map.sessions(), frame) == session) {
+      trajectory.push_back({keyframe->frame->timestamp, Inverse(keyframe->cam_from_world)});
     }
   }
   return trajectory;

@@ -128,9 +128,10 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
 }
 
 TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& second,
-                           std::vector<InstanceMask> masks) {
+                           std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks) {
   const bool is_stereo = options_.sensor == SensorKind::kStereo;
   ImageInput input{timestamp, ToGrey(image, options_.rgb_order), cv::Mat(), std::move(masks)};
+  input.right_masks = std::move(right_masks);
   if (!second.empty()) {
     (is_stereo ? input.right : input.depth) =
         is_stereo ? ToGrey(second, options_.rgb_order) : second;
@@ -144,7 +145,9 @@ TrackedFrame System::Track(const ImageInput& image) {
 }
 
 BuiltFrame System::Build(const ImageInput& image) {
-  ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
+  for (const auto* const masks : {&image.masks, &image.right_masks}) {
+    ValidateMasks(*masks, options_.camera.width, options_.camera.height);
+  }
   return frame_builder_->Build(image, *runner_, awaits_masks_);
 }
 
@@ -164,7 +167,7 @@ TrackedFrame System::Track(BuiltFrame built) {
                             .count());
   }
   frames_.push_back(report.tracked);
-  KeepAwaiting(report.tracked.frame, report.tracked.timestamp, std::move(built.awaiting));
+  KeepAwaiting(report, std::move(built.awaiting));
   if (!is_localization_only_ && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
     FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_.all());
@@ -180,13 +183,23 @@ void System::AwaitMasks(bool is_on) {
   pipeline_->AwaitMasks(is_on);
 }
 
-void System::KeepAwaiting(FrameId frame, double timestamp,
-                          std::shared_ptr<const DetectionInput> input) {
+void System::KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input) {
+  const TrackedFrame& tracked = report.tracked;
   if (input != nullptr) {
-    awaiting_.push_back({frame, timestamp, std::move(input)});
+    AwaitingFrame& awaiting = awaiting_.emplace_back();
+    awaiting.frame = tracked.frame;
+    awaiting.timestamp = tracked.timestamp;
+    awaiting.input = std::move(input);
+    if (tracked.state == TrackingState::kTracked && tracked.from_keyframe &&
+        !is_localization_only_) {
+      awaiting.request = KeyframeRequest{.frame = report.frame,
+                                         .pose = *tracked.from_keyframe,
+                                         .landmarks = report.landmarks,
+                                         .sightings = {}};
+    }
   }
   std::erase_if(awaiting_, [&](const AwaitingFrame& former) {
-    return timestamp - former.timestamp > kMaskPatience;
+    return tracked.timestamp - former.timestamp > kMaskPatience;
   });
 }
 
@@ -201,9 +214,12 @@ bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
   frame_builder_->AddDetections(masks, *found->input, runner, built);
   CheckVectors(*built.frame);
   mask_counts_.Add(built.masks);
-  pipeline_->AddDetections({.frame = frame,
-                            .detections = std::move(built.frame->detections),
-                            .keypoints = found->input->keypoints.size()});
+  pipeline_->AddDetections(
+      {.frame = frame,
+       .detections = std::move(built.frame->detections),
+       .keypoints = found->input->keypoints.size(),
+       .dynamic_keypoints = frame_builder_->DynamicKeypoints(masks, *found->input),
+       .request = std::move(found->request)});
   awaiting_.erase(found);
   return true;
 }

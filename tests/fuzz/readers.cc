@@ -35,6 +35,11 @@
 #include "results/pose_file.h"
 #include "results/scene_file.h"
 #include "results/true_object_file.h"
+#include "segmentation/class_names.h"
+#include "segmentation/instance_outline.h"
+#include "segmentation/network_layout.h"
+#include "segmentation/onnx_file.h"
+#include "segmentation/suppress_overlaps.h"
 #include "sequences/image_file.h"
 
 namespace hullslam {
@@ -290,6 +295,74 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
+// Also the names of the classes, which stand in the metadata.
+void FuzzOnnx(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const OnnxFile file = ReadOnnx(path);
+    Expect(!file.inputs.empty() && !file.outputs.empty(), "a network without inputs or outputs");
+    for (const auto& [key, value] : file.metadata) {
+      const auto names = ParseClassNames(value);
+      Expect(!names || !names->empty(), "a dictionary without names");
+    }
+    for (const OnnxValue& value : file.inputs) {
+      Expect(!DescribeShape(value.shape).empty() || value.shape.empty(), "no shape");
+    }
+  });
+}
+
+// An output whose values are the bytes, again and again, each as the logit of its sixteenth.
+NetworkOutput MakeOutput(std::string_view bytes, const std::vector<int>& shape) {
+  NetworkOutput output{.name = "output", .values = cv::Mat(shape, CV_32F)};
+  auto* const values = output.values.ptr<float>();
+  for (size_t i = 0; i < output.values.total(); ++i) {
+    values[i] = static_cast<float>(static_cast<signed char>(bytes[i % bytes.size()])) / 16.0F;
+  }
+  return output;
+}
+
+// The outputs of a network with 3 classes and 4 coefficients for an input of 64x96 px, in the
+// layout that the first byte chooses. The second one is the exponent of the boxes of decoded ones.
+void FuzzNetworkOutputs(std::string_view bytes) {
+  if (bytes.size() < 3) {
+    return;
+  }
+  constexpr int kCells = 8 * 12 + 4 * 6 + 2 * 3;
+  const std::string_view rest = bytes.substr(2);
+  const auto maps = [&](int channels) {
+    return std::vector{MakeOutput(rest, {1, channels, 8, 12}),
+                       MakeOutput(rest, {1, channels, 4, 6}),
+                       MakeOutput(rest, {1, channels, 2, 3})};
+  };
+  const std::array<std::vector<NetworkOutput>, 4> layouts = {
+      {{MakeOutput(rest, {1, 11, kCells})},
+       {MakeOutput(rest, {1, 3 * kCells, 12})},
+       maps(64 + 7),
+       maps(3 * 12)}};
+  std::vector<NetworkOutput> outputs = layouts[static_cast<unsigned char>(bytes[0]) % 4];
+  if (outputs.size() == 1) {
+    outputs[0].values *= std::ldexp(1.0, static_cast<signed char>(bytes[1]));
+    outputs[0].values = cv::min(outputs[0].values, 1e30);
+  }
+  outputs.push_back(MakeOutput(rest, {1, 4, 16, 24}));
+  const cv::Size input(96, 64);
+  Try([&] {
+    const NetworkLayout layout = RecogniseLayout(outputs, input, 3);
+    const Letterbox letterbox = FitLetterbox({100, 50}, input);
+    const std::vector<Candidate> found = SuppressOverlaps(
+        layout.decode(layout, outputs, {.min_score = 0.25, .classes = std::vector<bool>(3, true)}));
+    Expect(found.size() <= kMostInstances, "too many instances");
+    for (const Candidate& candidate : found) {
+      for (const auto& outline : {FindInstanceOutline(candidate, outputs.back().values, letterbox),
+                                  BoxOutline(candidate, letterbox)}) {
+        for (const Eigen::Vector2d& point : outline) {
+          Expect(point.x() >= -0.5 && point.x() <= 99.5 && point.y() >= -0.5 && point.y() <= 49.5,
+                 "an outline outside of the image");
+        }
+      }
+    }
+  });
+}
+
 constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajectory},
                                                        {"pose_file", FuzzPoseFile},
                                                        {"settings", FuzzSettings},
@@ -314,7 +387,9 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"classes_json", FuzzClassesJson},
                                                        {"vocabulary_binary", FuzzVocabularyBinary},
                                                        {"vocabulary_text", FuzzVocabularyText},
-                                                       {"map", FuzzMap}});
+                                                       {"map", FuzzMap},
+                                                       {"onnx", FuzzOnnx},
+                                                       {"network_outputs", FuzzNetworkOutputs}});
 
 }  // namespace
 

@@ -83,7 +83,7 @@ class ViewingGeometry : public ::testing::Test {
  protected:
   ViewingGeometry() {
     for (const double x : {1.0, -1.0}) {
-      const std::shared_ptr<Frame> frame = MakeFrame(0, 1);
+      const std::shared_ptr<Frame> frame = MakeFrame(map_.keyframes().NextId().value, 1);
       frame->features.keypoints[0].level = x > 0.0 ? 2 : 0;
       map_.AddKeyframe(frame, {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}});
     }

@@ -106,12 +106,15 @@ TEST(RestoreMap, AcceptsTheTablesOfAMap) {
   EXPECT_EQ(Dump(RestoreMap(TablesOf(MadeMap()))), Dump(MadeMap()));
 }
 
-TEST(RestoreMap, RefusesKeyframesThatAreMissingOrOutOfOrder) {
+TEST(RestoreMap, RefusesKeyframesThatAreMissingOrShareAFrame) {
   ExpectRefusal([](MapTables& t) { t.culled.Erase(KeyframeId(2)); }, {"keyframe 2", "missing"});
   ExpectRefusal([](MapTables& t) { t.culled.Put(KeyframeId(3), Culled(9, 0)); },
                 {"keyframe 3", "twice"});
-  ExpectRefusal([](MapTables& t) { t.culled.Mutable(KeyframeId(2)).frame = FrameId(3); },
-                {"keyframe 2", "frame", "not later"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        t.culled.Mutable(KeyframeId(2)).frame = t.keyframes.At(KeyframeId(0)).frame->id;
+      },
+      {"keyframe 2", "frame", "another keyframe"});
   ExpectRefusal([](MapTables& t) { t.culled.Mutable(KeyframeId(2)).frame = FrameId(); },
                 {"keyframe 2", "frame"});
   ExpectRefusal(

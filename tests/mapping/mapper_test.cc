@@ -418,6 +418,15 @@ class MapperLateMasksTest : public MapperTest {
         nullptr);
   }
 
+  // The masks of a frame that is no keyframe yet.
+  LateDetections OfTrackedFrame(uint32_t index, std::vector<Detection> detections) const {
+    const KeyframeRequest request = Request(index, KeyframeId(0));
+    return {.frame = FrameId(index),
+            .detections = std::move(detections),
+            .keypoints = request.frame->features.size(),
+            .request = request};
+  }
+
   void ProcessWithCup(uint32_t index) {
     KeyframeId newest;
     map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
@@ -490,12 +499,63 @@ TEST_F(MapperLateMasksTest, OnlyAKeyframeWithoutDetectionsTakesThem) {
   mapper_->AwaitMasks(true);
   ProcessFrame(0);
   ProcessFrame(10);
-  EXPECT_FALSE(AddLate(5)) << "no keyframe";
+  EXPECT_FALSE(AddLate(5)) << "no keyframe, and no pose to make one";
   EXPECT_TRUE(AddLate(10));
   EXPECT_FALSE(AddLate(10)) << "for the second time";
   LateDetections of_more_keypoints{.frame = FrameId(0), .detections = {DetectCup(0)}};
   EXPECT_FALSE(mapper_->Process(of_more_keypoints, nullptr)) << "the keyframe is compacted";
   EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
+}
+
+TEST_F(MapperLateMasksTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  ProcessFrame(10);
+  EXPECT_FALSE(mapper_->Process(OfTrackedFrame(5, {}), nullptr)) << "it shows no object";
+  EXPECT_TRUE(mapper_->Process(OfTrackedFrame(5, {DetectCup(5)}), nullptr));
+  EXPECT_FALSE(mapper_->Process(OfTrackedFrame(5, {DetectCup(5)}), nullptr)) << "again";
+  const std::optional<KeyframeId> late = map().KeyframeOfFrame(FrameId(5));
+  ASSERT_TRUE(late.has_value());
+  EXPECT_GT(*late, *map().KeyframeOfFrame(FrameId(10)));
+  EXPECT_EQ(map().NextFrame(), FrameId(11));
+  EXPECT_EQ(OnlyObject().observations.size(), 1u);
+  const Rigid3 error =
+      map().keyframes().At(*late).cam_from_world * Inverse(SyntheticWorld::CamFromWorld(5));
+  EXPECT_LT(error.translation.norm(), 0.02);
+}
+
+// The keypoints of the right half of the image are on a thing of a dynamic class.
+TEST_F(MapperLateMasksTest, LandmarksOnDynamicThingsAreRemovedWhenTheMasksCome) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  ProcessFrame(10);
+  const auto make_dynamic = [&](LateDetections late, const Frame& frame) {
+    for (uint32_t i = 0; i < late.keypoints; ++i) {
+      if (frame.features.keypoints[i].undistorted.x() > 320.0f) {
+        late.dynamic_keypoints.push_back(i);
+      }
+    }
+    return late;
+  };
+  const auto expect_static_only = [&](FrameId id, size_t dynamic, size_t keypoints) {
+    const Keyframe& keyframe = map().keyframes().At(*map().KeyframeOfFrame(id));
+    EXPECT_EQ(keyframe.frame->features.size(), keypoints - dynamic);
+    for (const Keypoint& keypoint : keyframe.frame->features.keypoints) {
+      EXPECT_LE(keypoint.undistorted.x(), 320.0f);
+    }
+  };
+  const std::shared_ptr<const Frame> tracked = world_.Observe(10).frame;
+  LateDetections of_keyframe = make_dynamic(OfTrackedFrame(10, {DetectCup(10)}), *tracked);
+  const size_t landmarks = map().landmarks().size();
+  ASSERT_GT(of_keyframe.dynamic_keypoints.size(), 20u);
+  EXPECT_TRUE(mapper_->Process(of_keyframe, nullptr));
+  EXPECT_LT(map().landmarks().size(), landmarks);
+  expect_static_only(FrameId(10), of_keyframe.dynamic_keypoints.size(), of_keyframe.keypoints);
+  Learn();
+  const LateDetections of_frame =
+      make_dynamic(OfTrackedFrame(5, {DetectCup(5)}), *world_.Observe(5).frame);
+  EXPECT_TRUE(mapper_->Process(of_frame, nullptr));
+  expect_static_only(FrameId(5), of_frame.dynamic_keypoints.size(), of_frame.keypoints);
 }
 
 TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {

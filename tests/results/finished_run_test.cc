@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/finished_run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "hullslam/results/trajectory_file.h"
@@ -108,6 +110,29 @@ TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {
   ExpectInputError([&] { run.ReadObjectResults(); }, {"objects.json"});
   ExpectInputError([&] { run.ReadSceneGraph(); }, {"scene.json"});
   ExpectInputError([&] { run.ReadLandmarkPoints(); }, {"map.ply"});
+}
+
+// The files have the poses of the camera as read, which is turned by 90 degrees.
+TEST_F(FinishedRunTest, PosesAreThoseOfTheRectifiedCamera) {
+  const Rigid3 turned(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitY())),
+      {1.0, 2.0, 3.0});
+  for (const char* const name : {"trajectory", "keyframes", "groundtruth"}) {
+    folder_.Write(fmt::format("a/run/{}.txt", name), FormatTrajectory({{1.0, turned}}));
+  }
+  summary_.provenance.sequence_choices["rectified_from_left"] = "0 0.707106781 0 0.707106781";
+  const FinishedRun run = Open();
+  for (const Trajectory& poses :
+       {run.ReadPoses(), run.ReadKeyframePoses(), run.ReadConvertedGroundtruth().value()}) {
+    const Rigid3& pose = poses[0].world_from_cam;
+    EXPECT_LT(pose.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1e-6);
+    EXPECT_EQ(pose.translation, Eigen::Vector3d(1.0, 2.0, 3.0));
+  }
+  EXPECT_GT(run.ReadPosesAsRead()[0].world_from_cam.rotation.angularDistance(
+                Eigen::Quaterniond::Identity()),
+            1.0);
+  summary_.provenance.sequence_choices["rectified_from_left"] = "0 0 x";
+  ExpectInputError([&] { Open().ReadPoses(); }, {"rectified_from_left", "'0 0 x'"});
 }
 
 TEST_F(FinishedRunTest, FindsInputsInTheFoldersAbove) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <new>
 
 namespace hullslam {
 namespace {
@@ -37,6 +38,13 @@ TEST(PrintFailure, IsOneLineOfPrintableCharacters) {
   ::testing::internal::CaptureStderr();
   PrintFailure("no\x1b[2J\nforged: a line");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "error: no?[2J?forged: a line\n");
+}
+
+TEST(RunMain, SaysThatMemoryIsShort) {
+  ::testing::internal::CaptureStderr();
+  const auto run = [](int, char**) -> int { throw std::bad_alloc(); };
+  EXPECT_EQ(RunMain(run, 0, nullptr), kFailed);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "error: there is not enough memory\n");
 }
 
 }  // namespace

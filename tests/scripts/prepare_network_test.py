@@ -47,7 +47,7 @@ class Maker:
     def conv(self, source, channels, of, constant, stride=1):
         weights = np.zeros((channels, of, stride, stride), np.float32)
         return self.add("Conv", [source, self.weight(weights),
-                                 self.weight(np.full(channels, constant, np.float32))],
+                                 self.weight(np.full(channels, constant).astype(np.float32))],
                         kernel_shape=[stride, stride], strides=[stride, stride])
 
     def reshape(self, source, shape):
@@ -96,6 +96,35 @@ def yolo(joins_maps, attention=False, shape=(1, 3, HEIGHT, WIDTH)):
                                         ["output1"]))
     return model_of(maker, {"output0": [1, 4 + CLASSES + COEFFICIENTS, CELLS],
                             "output1": [1, COEFFICIENTS, HEIGHT // 4, WIDTH // 4]}, shape)
+
+
+def yolo5():
+    """A network like YOLOv5-seg: three anchors in each cell, whose boxes have the constant 1 and the
+    rest 2. Their decoding: boxes relative to a grid, to the power of two of a sigmoid, in rows."""
+    maker, rows = Maker(), []
+    columns = 5 + CLASSES + COEFFICIENTS
+    for stride in (8, 16, 32):
+        height, width = HEIGHT // stride, WIDTH // stride
+        trunk = maker.conv("images", 8, 3, 0.0, stride)
+        constant = np.tile([1.0] * 4 + [2.0] * (columns - 4), 3)
+        cells = maker.reshape(maker.conv(trunk, 3 * columns, 8, constant), [1, 3, columns, height, width])
+        cells = maker.add("Transpose", [cells], perm=[0, 1, 3, 4, 2])
+        xy, wh, scores, mask = maker.add(
+            "Split", [cells, maker.weight(np.array([2, 2, 1 + CLASSES, COEFFICIENTS], np.int64))], 4, axis=4)
+        grid = np.stack(np.meshgrid(np.arange(width), np.arange(height)), -1).astype(np.float32) - 0.5
+        two = maker.weight(np.array(2, np.float32))
+        xy = maker.add("Add", [maker.add("Mul", [maker.add("Sigmoid", [xy]), two]),
+                               maker.weight(np.tile(grid, (1, 3, 1, 1, 1)))])
+        xy = maker.add("Mul", [xy, maker.weight(np.array(stride, np.float32))])
+        wh = maker.add("Pow", [maker.add("Mul", [maker.add("Sigmoid", [wh]), two]), two])
+        wh = maker.add("Mul", [wh, maker.weight(np.full((1, 3, height, width, 2), 10, np.float32))])
+        found = maker.add("Concat", [xy, wh, maker.add("Sigmoid", [scores]), mask], axis=4)
+        rows.append(maker.reshape(found, [1, 3 * height * width, columns]))
+    maker.nodes.append(helper.make_node("Concat", rows, ["output0"], axis=1))
+    maker.nodes.append(helper.make_node("Identity", [maker.conv("images", COEFFICIENTS, 3, 0.5, 4)],
+                                        ["output1"]))
+    return model_of(maker, {"output0": [1, 3 * CELLS, columns],
+                            "output1": [1, COEFFICIENTS, HEIGHT // 4, WIDTH // 4]})
 
 
 def model_of(maker, outputs, shape=(1, 3, HEIGHT, WIDTH)):
@@ -158,6 +187,16 @@ class PrepareNetwork(unittest.TestCase):
                     self.assertEqual(self.prepare(), (0, ""))
                     self.expect_maps()
                     self.assertEqual(onnx.load(str(self.target)).metadata_props[0].key, "names")
+
+    def test_cuts_yolo5_before_its_grid(self):
+        onnx.save(yolo5(), str(self.source))
+        self.force_cut()
+        self.assertEqual(self.prepare(), (0, ""))
+        prototypes, *maps = self.outputs()
+        self.assertEqual(prototypes.shape, (1, COEFFICIENTS, HEIGHT // 4, WIDTH // 4))
+        for stride, values in zip((8, 16, 32), maps):
+            self.assertEqual(values.shape, (1, 3 * (5 + CLASSES + COEFFICIENTS), HEIGHT // stride, WIDTH // stride))
+            np.testing.assert_array_equal(values[0, :6, 0, 0], [1.0] * 4 + [2.0] * 2)
 
     def test_open_sizes_and_batches_are_accepted(self):
         onnx.save(yolo(True, shape=("batch", 3, "height", "width")), str(self.source))

@@ -23,8 +23,17 @@ TEST(OpenNetwork, OutputsAreInTheOrderOfTheFileAndOutliveTheNextRun) {
   EXPECT_FLOAT_EQ(first[3].values.ptr<float>()[0], -10.0F);
 }
 
-TEST(OpenNetwork, OpencvSaysWhatItCannotRead) {
+TEST(OpenNetwork, OpencvSaysWhatItCannotReadOnlyInItsException) {
   EXPECT_THROW(OpenNetwork("no network"), cv::Exception);
+  MadeMessage node;
+  node.Text(1, "images").Text(2, "out").Text(4, "Nonsense");
+  MadeMessage graph;
+  graph.Message(1, node).Text(2, "graph");
+  MadeMessage model;
+  model.Number(1, 8).Message(7, graph);
+  testing::internal::CaptureStderr();
+  EXPECT_THROW(OpenNetwork(model.bytes()), cv::Exception);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

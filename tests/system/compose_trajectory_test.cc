@@ -108,10 +108,10 @@ TEST(ReplaceEarlyFrames, KeepsATrackedFrameWithClearlyMoreLandmarks) {
   EXPECT_FALSE(frames[3].from_keyframe);
 }
 
-TEST(KeyframeTrajectory, HasThePosesOfTheKeyframes) {
+TEST(KeyframeTrajectory, HasThePosesOfTheKeyframesInTheOrderOfTheirFrames) {
   Map map;
-  map.AddKeyframe(MakeFrame(4, 1), Shift(-1.0));
   map.AddKeyframe(MakeFrame(7, 1), Shift(2.0));
+  map.AddKeyframe(MakeFrame(4, 1), Shift(-1.0));  // its masks came late
   const Trajectory trajectory = KeyframeTrajectory(map);
   ASSERT_EQ(trajectory.size(), 2u);
   EXPECT_EQ(trajectory[0].world_from_cam.translation.x(), 1.0);

@@ -652,6 +652,18 @@ TEST_P(SystemTest, MasksThatComeLateGiveTheDetectionsOfMasksInTime) {
   EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
 }
 
+TEST_P(SystemTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
+  System system(Wall::Options(), GetParam());
+  TrackFrame(system, 0);
+  system.AwaitMasks(true);
+  const FrameId second = TrackFrame(system, 1).frame;
+  ASSERT_FALSE(system.map()->KeyframeOfFrame(second).has_value());
+  EXPECT_TRUE(system.AddMasks(second, SquareMask()));
+  system.Finish();
+  EXPECT_EQ(DetectionsOfKeyframe(system, second).size(), 1u);
+  EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
+}
+
 TEST(System, MasksMayComeTwoSecondsLate) {
   System system(Wall::Options(), PipelineKind::kSequential);
   const auto track = [&](double timestamp, int index) {

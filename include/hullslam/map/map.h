@@ -169,6 +169,7 @@ class Map {
 
  private:
   void CountInIsland(IslandId island);
+  void NoteFrame(FrameId frame, KeyframeId keyframe);
   // Takes a keyframe out of the table and the index. `kept` is its pose from now on.
   void Erase(KeyframeId keyframe, const RelativePose& kept);
   // cam_from_reference with the translation in the current unit of length of its reference.
@@ -182,6 +183,7 @@ class Map {
   Replacements<LandmarkId> replaced_landmarks_;
   Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
+  CowTable<FrameId, KeyframeId> keyframe_of_frame_;  // culled keyframes included
   std::vector<Session> sessions_;
   std::vector<size_t> island_sizes_;  // one entry per island that was begun
   size_t islands_joined_ = 0;

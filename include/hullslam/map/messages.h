@@ -100,11 +100,15 @@ struct MapCorrection {
 };
 
 // The detections of a frame whose masks came after it was tracked. If a keyframe was made of the
-// frame, it gets them.
+// frame, it gets them; else a keyframe is made of it if it shows objects.
 struct LateDetections {
   FrameId frame;
   std::vector<Detection> detections;
   size_t keypoints = 0;  // of the frame, to which the detections refer
+  // The keypoints on things of the dynamic classes, by increasing index.
+  std::vector<uint32_t> dynamic_keypoints = {};
+  // The keyframe that can be made of the frame; absent if it was not tracked in a growing map.
+  std::optional<KeyframeRequest> request = std::nullopt;
 };
 
 // The messages that the mapper receives.

@@ -81,14 +81,16 @@ class System {
   // camera, as in ImageInput, or the right image of a stereo camera, which may have colours; a
   // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
   // `masks` are those of the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
-  // makes them from images). Throws InputError for images of another type or size and for masks
+  // makes them from images), `right_masks` those in the right image, which add lines of the same
+  // objects. Throws InputError for images of another type or size and for masks
   // that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
   // refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give the last published state.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& second = {},
-                     std::vector<InstanceMask> masks = {});
+                     std::vector<InstanceMask> masks = {},
+                     std::vector<InstanceMask> right_masks = {});
   TrackedFrame Track(const ImageInput& image);
 
   // The two halves of Track(image). Building needs no map, so one other thread may build the next
@@ -111,11 +113,11 @@ class System {
   // Reset() switches this off.
   void AwaitMasks(bool is_on);
   // Adds the masks of a frame that was tracked without, also an empty list if the image shows no
-  // object. If a keyframe was made of the frame, it gets their detections, and objects are mapped
-  // with them; other frames were tracked already, and their masks change nothing. To be called by
-  // the thread of Track. Returns false, and does nothing, for a frame that awaits no masks (any
-  // more): its masks were added, or its time stamp is more than kMaskPatience before that of the
-  // last frame. Throws as Track does.
+  // object. The keyframe of the frame gets their detections, and objects are mapped with them; if
+  // there is none and the masks show objects, it is made now. Landmarks on things of the dynamic
+  // classes are removed. To be called by the thread of Track. Returns false, and does nothing, for
+  // a frame that awaits no masks (any more): its masks were added, or its time stamp is more than
+  // kMaskPatience before that of the last frame. Throws as Track does.
   bool AddMasks(FrameId frame, std::vector<InstanceMask> masks);
   static constexpr double kMaskPatience = 2.0;  // s
 
@@ -176,7 +178,7 @@ class System {
  private:
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
-  void KeepAwaiting(FrameId frame, double timestamp, std::shared_ptr<const DetectionInput> input);
+  void KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input);
   void CheckStamp(double timestamp) const;
   void CheckVectors(const Frame& frame);
 
@@ -196,6 +198,7 @@ class System {
     FrameId frame;
     double timestamp = 0.0;
     std::shared_ptr<const DetectionInput> input;
+    std::optional<KeyframeRequest> request;  // as in LateDetections
   };
   std::deque<AwaitingFrame> awaiting_;
   DetectionCounts mask_counts_;  // counts of the tracked frames

@@ -191,7 +191,7 @@ std::unique_ptr<Dataset> MakeEurocStereoDataset() {
   return std::make_unique<CalibratedPairs>(
       DatasetHelp{.sequence = "folder with mav0, in the format ASL, with cam0 and cam1",
                   .settings = "default: the cameras of the two sensor.yaml in SEQUENCE",
-                  .groundtruth = "of the rectified left camera; default: "
+                  .groundtruth = "of the left camera; default: "
                                  "state_groundtruth_estimate0 or groundtruth.txt in SEQUENCE"},
       "cam0/sensor.yaml and cam1/sensor.yaml", OpenEurocPairs);
 }

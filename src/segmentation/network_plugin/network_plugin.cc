@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shared library hullslam_network, which open_network.cc loads.
 
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 
 #include "segmentation/network.h"
@@ -37,6 +38,8 @@ class OpencvNetwork final : public Network {
 
 extern "C" __attribute__((visibility("default"))) Network* HullslamMakeNetwork(const char* bytes,
                                                                                size_t size) {
+  // OpenCV also prints what its exceptions say, on several lines that name its source files.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   return new OpencvNetwork(bytes, size);
 }
 
