@@ -127,7 +127,8 @@ void BindRuns(py::module_& module) {
              "output: the file; None: report.html in the folder, or beside the map.");
   module.def("export", &Export, py::arg("source"), py::arg("format"), py::arg("output"),
              py::kw_only(), py::arg("objects_as") = "ellipsoids", py::arg("text") = false,
-             py::arg("masked_classes") = SplitNames(TrackingOptions().dynamic_classes), py::arg("force") = false,
+             py::arg("masked_classes") = SplitNames(TrackingOptions().dynamic_classes),
+             py::arg("force") = false,
              "Writes a run (its folder) or a saved map in a format of other programs\n"
              "(docs/exports.md). Returns a text about what was written.\n\n"
              "format: such as 'colmap' or 'gltf'. output: the file or folder to write.\n"
