@@ -9,10 +9,11 @@ y down, z forward). Lengths are in metres, in monocular runs in units of the map
 seconds.
 """
 
-from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, Masks, MaskFiles,
-                    SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
-                    TrajectoryErrors, __version__, default_settings, evaluate_trajectory,
-                    open_images, open_masks, open_tum, preset_names, read_map, read_trajectory)
+from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, MaskFiles, Masks,
+                    Run, SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
+                    TrajectoryErrors, __version__, default_settings, evaluate_trajectory, export,
+                    open_euroc, open_icl, open_images, open_masks, open_run, open_tum, preset_names,
+                    read_map, read_trajectory, report, scene)
 from ._settings import Settings
 
 InputError.__doc__ = """A file, a setting or an argument is wrong.
@@ -20,7 +21,8 @@ InputError.__doc__ = """A file, a setting or an argument is wrong.
 The message names the file and line, or the argument and its value, and says what was expected.
 """
 
-__all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles", "Masks",
-           "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System", "TrackResult",
-           "Trajectory", "TrajectoryErrors", "__version__", "default_settings", "evaluate_trajectory",
-           "open_images", "open_masks", "open_tum", "preset_names", "read_map", "read_trajectory"]
+__all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles",
+           "Masks", "Run", "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System",
+           "TrackResult", "Trajectory", "TrajectoryErrors", "__version__", "default_settings",
+           "evaluate_trajectory", "export", "open_euroc", "open_icl", "open_images", "open_masks",
+           "open_run", "open_tum", "preset_names", "read_map", "read_trajectory", "report", "scene"]

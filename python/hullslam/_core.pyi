@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import os
+import pathlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
@@ -196,6 +197,29 @@ class MaskFiles:
     @property
     def format(self) -> str:
         """The name of the format, such as 'yolo-seg'."""
+
+class Run:
+    """The results of a finished run (docs/outputs.md)."""
+    @property
+    def folder(self) -> pathlib.Path:
+        """The output folder."""
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The content of summary.json: dict."""
+    @property
+    def trajectory(self) -> Trajectory:
+        """The Trajectory of all tracked frames."""
+    @property
+    def keyframes(self) -> Trajectory:
+        """The Trajectory of the keyframes."""
+    @property
+    def points(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """The landmarks: positions (N, 3) float32, world frame, and colours
+        (N, 3) uint8; None if the run has not written them.
+        """
+    @property
+    def objects(self) -> dict[str, Any] | None:
+        """The content of objects.json: dict; None for a run without masks."""
 
 class MapObject:
     """An object of the map: an ellipsoid with a class. Lengths are in metres, in
@@ -474,6 +498,38 @@ def open_tum(folder: _Path, settings: SettingsTable, *, depth: bool = True,
     depth: False for a monocular run, whose frames have no depth.
     associations: a file of pairs of images; None: they are paired by time.
     Raises InputError with file and line for whatever is wrong with the folder.
+    """
+def open_icl(folder: _Path, settings: SettingsTable, *, depth: bool = True) -> ImageSequence:
+    """Opens a sequence of ICL-NUIM, with the settings of config/ICL.yaml.
+
+    depth: False for a monocular run, whose frames have no depth.
+    """
+def open_euroc(folder: _Path, settings: SettingsTable) -> ImageSequence:
+    """Opens the left camera of a sequence of EuRoC. Its settings are those of
+    Settings(folder / 'mav0/cam0/sensor.yaml').
+    """
+def open_run(folder: _Path) -> Run:
+    """Opens the output folder of a finished run: Run. Raises InputError if there is none."""
+def scene(source: _Path) -> dict[str, Any]:
+    """The objects, relations and surfaces of a run (its folder) or of a saved map, as in
+    scene.json (docs/scene.md): dict. Raises InputError for a run without masks.
+    """
+def report(source: _Path, output: _Path | None = None) -> pathlib.Path:
+    """Writes the report of a run (its folder) or of a saved map, as `view --report` does.
+    Returns its path.
+
+    output: the file; None: report.html in the folder, or beside the map.
+    """
+def export(source: _Path, format: str, output: _Path, *,
+           objects_as: Literal["ellipsoids", "boxes"] = "ellipsoids", text: bool = False,
+           masked_classes: set[str] = ..., force: bool = False) -> str:
+    """Writes a run (its folder) or a saved map in a format of other programs
+    (docs/exports.md). Returns a text about what was written.
+
+    format: such as 'colmap' or 'gltf'. output: the file or folder to write.
+    objects_as: 'ellipsoids' or 'boxes' (gltf, ply). text: text files (colmap).
+    masked_classes: left out of training (nerfstudio). force: replace what is there.
+    Raises InputError if the run lacks something that the format needs.
     """
 def open_images(path: _Path, settings: SettingsTable, *, fps: float | None = None) -> ImageSequence:
     """Opens a video or a folder of images without depth. Frames of a video must be read

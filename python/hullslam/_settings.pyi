@@ -102,7 +102,7 @@ class _mapping:
     cull_keyframes: bool
     """remove redundant keyframes (true or false (1 or 0); default true)"""
     culling_rule: Literal["hullslam", "orb_slam2"]
-    """which keyframes are redundant: also the views of objects, far landmarks and viewpoints count, or the rule of ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
+    """which keyframes are redundant: also observations of objects, far landmarks and directions count, or the rule of ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
     final_bundle_adjustment: bool
     """run a global bundle adjustment once at the end of the run (true or false (1 or 0); default true)"""
     fixed_keyframes: int
@@ -226,15 +226,15 @@ class _objects_start:
     method: Literal["fitted", "oriented_box", "box_planes", "ray_sphere", "single_view"]
     """how the first quadric of an object is made (docs/objects.md) (one of: fitted, oriented_box, box_planes, ray_sphere, single_view; default fitted)"""
     min_parallax: float
-    """least angle between views that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 1)"""
+    """least angle between rays that an object with depth needs to be mapped, degrees (a number from 0 to 180; default 1)"""
     min_parallax_without_depth: float
-    """least angle between views that an object without depth needs to be mapped, degrees (a number from 0 to 180; default 15)"""
+    """least angle between rays that an object without depth needs to be mapped, degrees (a number from 0 to 180; default 15)"""
     min_views: int
     """number of keyframes that must observe an object before it is mapped (an integer from 1 to 1000; default 3)"""
 
 class _objects_validity:
     max_elongation: float
-    """a mapped object that is longer along the view than across it by a larger factor needs more parallax (a number from 1 to 1000; default 1.5)"""
+    """a mapped object that is longer along its rays than across them by a larger factor needs more parallax (a number from 1 to 1000; default 1.5)"""
     max_misfit: float
     """largest RMS distance of the outlines of a mapped object from its projected ellipses, as a share of the size of its masks (a number from 0 to 100; default 0.25)"""
     max_stretch: float

@@ -12,6 +12,8 @@
 
 #include "arrays.h"
 #include "hullslam/masks/open_masks.h"
+#include "hullslam/sequences/euroc_sequence.h"
+#include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "module.h"
@@ -73,6 +75,21 @@ std::unique_ptr<FrameList> OpenTum(const std::filesystem::path& folder,
                                  .frames_per_second = settings.options.frames_per_second}),
         settings);
   });
+}
+
+std::unique_ptr<FrameList> OpenIcl(const std::filesystem::path& folder,
+                                   const SettingsTable& settings, bool depth) {
+  return WithoutGil([&] {
+    const SystemOptions& options = settings.options;
+    return MakeList(
+        OpenIclSequence(folder, options.camera, options.depth, {.use_depth = depth}).images,
+        settings);
+  });
+}
+
+std::unique_ptr<FrameList> OpenEuroc(const std::filesystem::path& folder,
+                                     const SettingsTable& settings) {
+  return WithoutGil([&] { return MakeList(OpenEurocSequence(folder).images, settings); });
 }
 
 std::unique_ptr<FrameList> OpenImages(const std::filesystem::path& path,
@@ -159,6 +176,13 @@ void BindSequences(py::module_& module) {
              "depth: False for a monocular run, whose frames have no depth.\n"
              "associations: a file of pairs of images; None: they are paired by time.\n"
              "Raises InputError with file and line for whatever is wrong with the folder.");
+  module.def("open_icl", &OpenIcl, py::arg("folder"), py::arg("settings"), py::kw_only(),
+             py::arg("depth") = true,
+             "Opens a sequence of ICL-NUIM, with the settings of config/ICL.yaml.\n\n"
+             "depth: False for a monocular run, whose frames have no depth.");
+  module.def("open_euroc", &OpenEuroc, py::arg("folder"), py::arg("settings"),
+             "Opens the left camera of a sequence of EuRoC. Its settings are those of\n"
+             "Settings(folder / 'mav0/cam0/sensor.yaml').");
   module.def("open_images", &OpenImages, py::arg("path"), py::arg("settings"), py::kw_only(),
              py::arg("fps") = py::none(),
              "Opens a video or a folder of images without depth. Frames of a video must be read\n"

@@ -89,6 +89,7 @@ PYBIND11_MODULE(_core, module) {
   BindMasks(module);
   BindSegmenter(module);
   BindSequences(module);
+  BindRuns(module);
   BindMap(module);
   BindSystem(module);
   BindKnownPoseMapper(module);

@@ -11,6 +11,7 @@ void BindTrajectories(pybind11::module_& module);
 void BindMasks(pybind11::module_& module);
 void BindSegmenter(pybind11::module_& module);
 void BindSequences(pybind11::module_& module);
+void BindRuns(pybind11::module_& module);
 void BindMap(pybind11::module_& module);
 void BindTrackResult(pybind11::module_& module);
 void BindSystem(pybind11::module_& module);

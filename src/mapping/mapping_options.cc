@@ -12,8 +12,8 @@ void MappingOptions::Bind(OptionTable& options) {
             "its landmarks");
   scope.Add("cull_keyframes", &cull_keyframes, "remove redundant keyframes");
   scope.AddEnum("culling_rule", &culling_rule, {"hullslam", "orb_slam2"},
-                "which keyframes are redundant: also the views of objects, far landmarks and "
-                "viewpoints count, or the rule of ORB-SLAM2");
+                "which keyframes are redundant: also observations of objects, far landmarks and "
+                "directions count, or the rule of ORB-SLAM2");
   scope.AddEnum(
       "landmark_rule", &landmark_rule, {"hullslam", "orb_slam2"},
       "which keypoints become landmarks: all with depth and pairs whose expected parallax "

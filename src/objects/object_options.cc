@@ -59,9 +59,9 @@ void StartOptions::Bind(const OptionScope& scope) {
   scope.Add("min_views", &min_views, Range::Between(1, 1000),
             "number of keyframes that must observe an object before it is mapped");
   scope.Add("min_parallax", &min_parallax, Range::Between(0.0, 180.0),
-            "least angle between views that an object with depth needs to be mapped, degrees");
+            "least angle between rays that an object with depth needs to be mapped, degrees");
   scope.Add("min_parallax_without_depth", &min_parallax_without_depth, Range::Between(0.0, 180.0),
-            "least angle between views that an object without depth needs to be mapped, degrees");
+            "least angle between rays that an object without depth needs to be mapped, degrees");
   scope.Add("inflation", &inflation, Range::Between(0.5, 3.0),
             "half axes of the start of a quadric in relation to those of the box of its points");
 }
@@ -77,9 +77,10 @@ void ValidityOptions::Bind(const OptionScope& scope) {
   scope.Add("max_misfit", &max_misfit, Range::Between(0.0, 100.0),
             "largest RMS distance of the outlines of a mapped object from its projected ellipses, "
             "as a share of the size of its masks");
-  scope.Add("max_elongation", &max_elongation, Range::Between(1.0, 1000.0),
-            "a mapped object that is longer along the view than across it by a larger factor needs "
-            "more parallax");
+  scope.Add(
+      "max_elongation", &max_elongation, Range::Between(1.0, 1000.0),
+      "a mapped object that is longer along its rays than across them by a larger factor needs "
+      "more parallax");
 }
 
 void FusionOptions::Bind(const OptionScope& scope) {

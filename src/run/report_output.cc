@@ -47,10 +47,8 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
   return {};
 }
 
-std::string ReportOfRun(const fs::path& folder) { return PageOf(MakeReport(folder)); }
-
-std::string ReportOfMap(const fs::path& map) {
-  return PageOf(MakeReportOfMap(map, HULLSLAM_VERSION));
+std::string ReportOf(const fs::path& source) {
+  return PageOf(MakeReportOf(source, HULLSLAM_VERSION));
 }
 
 }  // namespace hullslam

@@ -24,10 +24,8 @@ void AddReportFlag(CLI::App& app, bool& report);
 std::string WriteReport(const std::filesystem::path& folder, const Map& map,
                         const SystemOptions& options, const ImageSequence& sequence, bool is_quiet);
 
-// The report of a finished run, of which only the files are left, as the text of a page. Throws
-// InputError if they are not those of a run. Prints what was left out.
-std::string ReportOfRun(const std::filesystem::path& folder);
-// The same for a file of --save-map.
-std::string ReportOfMap(const std::filesystem::path& map);
+// The report of a finished run or of a file of --save-map as the text of a page. Throws InputError
+// if `source` is neither. Prints what was left out.
+std::string ReportOf(const std::filesystem::path& source);
 
 }  // namespace hullslam

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hullslam/map_files/map_file.h"
+#include "hullslam/util/error.h"
 #include "system/make_sensor.h"
 #include "view/aligned_truth.h"
 #include "view/fit_size.h"
@@ -48,6 +49,17 @@ Report Format(ViewModel model) {
   return {FormatReport(model), model.notes};
 }
 
+// The report of a file of --save-map.
+Report ReportOfMap(const std::filesystem::path& map, const std::string& version) {
+  const StoredMap stored = ReadMap(map);
+  const SystemOptions options = OptionsOf(stored.settings);
+  ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
+  AddUp(std::nullopt, model);
+  model.title = map.filename().string();
+  model.version = version;
+  return Format(std::move(model));
+}
+
 }  // namespace
 
 Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
@@ -63,14 +75,18 @@ Report MakeReport(const std::filesystem::path& folder, const Map& map, const Sys
 
 Report MakeReport(const std::filesystem::path& folder) { return Format(ViewOfRun(folder)); }
 
-Report MakeReportOfMap(const std::filesystem::path& map, const std::string& version) {
-  const StoredMap stored = ReadMap(map);
-  const SystemOptions options = OptionsOf(stored.settings);
-  ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
-  AddUp(std::nullopt, model);
-  model.title = map.filename().string();
-  model.version = version;
-  return Format(std::move(model));
+Report MakeReportOf(const std::filesystem::path& source, const std::string& version) {
+  if (!std::filesystem::exists(source)) {
+    throw InputError(source.string() +
+                     ": does not exist, expected the output folder of a run or a map file");
+  }
+  return std::filesystem::is_directory(source) ? MakeReport(source) : ReportOfMap(source, version);
+}
+
+std::filesystem::path DefaultReportPath(const std::filesystem::path& source) {
+  std::filesystem::path beside = source;
+  return std::filesystem::is_directory(source) ? source / "report.html"
+                                               : beside.replace_extension(".html");
 }
 
 }  // namespace hullslam

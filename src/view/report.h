@@ -23,7 +23,11 @@ Report MakeReport(const std::filesystem::path& folder, const Map& map, const Sys
                   const ImageSequence& sequence);
 // The report of a finished run, of which only the files are left.
 Report MakeReport(const std::filesystem::path& folder);
-// The report of a file of --save-map. `version` is that of the program.
-Report MakeReportOfMap(const std::filesystem::path& map, const std::string& version);
+// The report of a finished run or of a file of --save-map, whichever `source` is. `version` is that
+// of the program.
+Report MakeReportOf(const std::filesystem::path& source, const std::string& version);
+// Where it is written by default: report.html in the folder of a run. A map is no part of a folder
+// of results, so its report has the name of the map.
+std::filesystem::path DefaultReportPath(const std::filesystem::path& source);
 
 }  // namespace hullslam

@@ -91,6 +91,7 @@ def documented_folder(desk, tmp_path, monkeypatch):
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "rgbd_dataset_freiburg1_xyz").symlink_to(desk)
     (tmp_path / "config").symlink_to(ROOT / "config")
+    run_program("rgbd_tum", desk, "--masks", desk / "masks", "--output", tmp_path / "out", "--quiet")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "exports/export_folder.h"
 #include "exports/export_formats.h"
 #include "exports/export_input.h"
+#include "exports/export_run.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "run/command_line.h"
 #include "run/messages.h"
@@ -88,17 +87,13 @@ int RunExport(int argc, char** argv) {
     return kDone;
   }
   arguments.options.masked_classes = SplitNames(arguments.masked_classes);
-  const auto format = std::find_if(
-      ExportFormats().begin(), ExportFormats().end(),
-      [&](const ExportFormat& candidate) { return arguments.format == candidate.name; });
-  ExportInput input = ReadExportInput(arguments.source, format->need);
-  CheckExportPath(arguments.options.output, input.read, arguments.force);
-  const std::string content = format->write(arguments.options, input);
-  for (const std::string& note : input.notes) {
+  const FinishedExport written =
+      ExportRun(arguments.source, arguments.format, arguments.options, arguments.force);
+  for (const std::string& note : written.notes) {
     PrintError("note: {}\n", note);
   }
   if (!arguments.quiet) {
-    Print("wrote {}: {}\n", arguments.options.output.string(), content);
+    Print("wrote {}: {}\n", arguments.options.output.string(), written.content);
   }
   return kDone;
 }

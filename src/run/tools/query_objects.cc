@@ -10,27 +10,24 @@
 #include <string>
 #include <vector>
 
-#include "eval/object_metrics.h"
 #include "files/atomic_file.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
 #include "files/read_text.h"
-#include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_classes.h"
 #include "results/finished_run.h"
-#include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 #include "scene/answer.h"
-#include "scene/make_scene.h"
 #include "scene/question.h"
 #include "sequences/image_file.h"
 #include "util/printable.h"
 #include "util/trim.h"
 #include "view/answer_sheet.h"
+#include "view/load_scene.h"
 #include "view/view_of_run.h"
 
 namespace hullslam {
@@ -102,26 +99,6 @@ void CheckArguments(const QueryArguments& arguments) {
     throw InputError("--picture: " + arguments.source.string() +
                      " is a map, which has no images, expected the output folder of a run");
   }
-}
-
-Scene SceneOfMap(const fs::path& path) {
-  const StoredMap stored = ReadMap(path);
-  return MakeScene(stored.map, MeasuredObjects(stored.map, stored.settings.camera, path),
-                   std::nullopt);
-}
-
-Scene LoadScene(const fs::path& source) {
-  std::error_code error;
-  if (!fs::is_directory(source, error)) {
-    return SceneOfMap(source);
-  }
-  const fs::path file = source / "scene.json";
-  if (!fs::exists(file, error)) {
-    const bool has_objects = fs::exists(source / "objects.json", error);
-    throw InputError(source.string() + ": has no scene.json, expected the output folder of a run " +
-                     (has_objects ? "of this version; repeat the run" : "with --masks"));
-  }
-  return ReadScene(file);
 }
 
 // The classes of the objects, and those of the file of --classes.

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "files/atomic_file.h"
-#include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/live_output.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/report_output.h"
 #include "run/tools/commands.h"
+#include "view/report.h"
 
 namespace hullslam {
 namespace {
@@ -26,18 +26,9 @@ struct ViewArguments {
   bool quiet = false;
 };
 
-// A map is no part of a folder of results, so its report has the name of the map.
-fs::path OutputOf(const ViewArguments& arguments) {
-  if (!arguments.output.empty()) {
-    return arguments.output;
-  }
-  fs::path beside = arguments.input;
-  return fs::is_directory(arguments.input) ? arguments.input / "report.html"
-                                           : beside.replace_extension(".html");
-}
-
 void WritePage(const ViewArguments& arguments, const std::string& page) {
-  const fs::path output = OutputOf(arguments);
+  const fs::path output =
+      arguments.output.empty() ? DefaultReportPath(arguments.input) : arguments.output;
   WriteFileAtomically(output, page);
   if (!arguments.quiet) {
     Print("the report is in {}\n", output.string());
@@ -65,12 +56,7 @@ int RunView(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  if (!fs::exists(arguments.input)) {
-    throw InputError(arguments.input.string() +
-                     ": does not exist, expected the output folder of a run or a map file");
-  }
-  const std::string page = fs::is_directory(arguments.input) ? ReportOfRun(arguments.input)
-                                                             : ReportOfMap(arguments.input);
+  const std::string page = ReportOf(arguments.input);
   if (arguments.report) {
     WritePage(arguments, page);
   } else {
