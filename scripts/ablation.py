@@ -25,7 +25,6 @@ made by the same command and the same program. A run that fails is reported and 
 repeated when the script is started again. docs/ablation.md explains the table.
 """
 
-import argparse
 import hashlib
 import json
 import pathlib
@@ -37,7 +36,7 @@ import sys
 from paper_tables.engine import LOG, PROGRAMS, last_message, stop_by_signals, work_off
 from paper_tables.figures import lost_percent
 from run_statistics import compare
-from support import (InputError, exit_code, programs_folder, read_text, try_read_json, value_at,
+from support import (InputError, exit_code, parser_of, programs_folder, read_text, try_read_json, value_at,
                      write)
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
@@ -269,8 +268,7 @@ def ablate(arguments):
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--sequence", action="append", required=True, metavar="[PROGRAM=]SEQUENCE",
                         help="folder of a sequence, may contain {seed}, and the program for it if "
                              "it is not that of --program; can be repeated")

@@ -19,13 +19,12 @@ compared.
 Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped, 2 bad usage or input.
 """
 
-import argparse
 import json
 import pathlib
 import shutil
 import sys
 
-from support import InputError, exit_code, programs_folder, require, try_read_json, write
+from support import exit_code, InputError, parser_of, programs_folder, require, try_read_json, write
 
 require("numpy", "yaml")
 from paper_tables.definitions import read_definitions  # noqa: E402
@@ -178,8 +177,7 @@ def gate(arguments):
 
 
 def parse_arguments(words):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "accuracy",
                         metavar="FOLDER", help="folder for runs and figures (default: build/accuracy)")
     parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",

@@ -14,19 +14,18 @@ true pose of the moment at which it was taken, under its new stamp, so the error
 its poses and not that of the stamps. groundtruth_in.txt is then the file of IN, in true time.
 
 The images of ICL-NUIM (rgb/N.png and associations.txt) have numbers instead of stamps. They can be
-missing, but stamps cannot be wrong, and images cannot be shown twice.
+missing, but stamps cannot be wrong.
 
 Exit codes: 0 done, 2 bad usage or input.
 """
 
-import argparse
 import pathlib
 import shutil
 import sys
 import tempfile
 import zlib
 
-from support import InputError, exit_code, read_trajectory, require
+from support import exit_code, InputError, parser_of, read_trajectory, require
 
 require("numpy")
 import numpy as np  # noqa: E402
@@ -209,8 +208,7 @@ def degrade(arguments):
 
 
 def parse(words):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="IN")
     parser.add_argument("out", type=pathlib.Path, metavar="OUT")
     masks = parser.add_mutually_exclusive_group()

@@ -11,7 +11,6 @@ import numpy as np
 MIN_STEP = 1e-4  # s, from one late stamp to the next
 BRIGHTNESS_PERIOD = 30  # images with the same brightness
 HOLE = 32  # px, side of a hole in a depth image
-ROUGHNESS_LENGTH = 12.0  # px, along an outline, between points whose errors are independent
 
 
 @dataclasses.dataclass
@@ -47,16 +46,6 @@ def late(frames, milliseconds, rng):
 def missing(frames, share, _):
     count, period = share
     return [frame for i, frame in enumerate(frames) if i % period < period - count]
-
-
-def stall(frames, share, _):
-    count, period = share
-    for i, frame in enumerate(frames):
-        over = i % period - (period - count)
-        if over > 0:
-            shown = frames[i - over]
-            frame.taken, frame.image, frame.depth = shown.taken, shown.image, shown.depth
-    return frames
 
 
 def even(frames, interval, _):
@@ -101,10 +90,6 @@ def resize_depth(depth, size, *_):
     return cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST)  # no mean of two surfaces
 
 
-def turn(image, degrees, *_):
-    return np.rot90(image, degrees // 90).copy()
-
-
 # ---- masks: functions (masks, amount, random numbers, classes of the sequence, size) -> masks
 # A mask is its class, its outline as shares of the image's size (n x 2), and its score or nothing.
 
@@ -116,25 +101,6 @@ def mask_shift(masks, pixels, rng, _, size):
     return [(number, moved(outline), score) for number, outline, score in masks]
 
 
-def mask_rough(masks, pixels, rng, _, size):
-    return [(number, rough_outline(outline * size, pixels, rng) / size, score)
-            for number, outline, score in masks]
-
-
-def rough_outline(points, sigma, rng):
-    """The points (px) moved across the outline by a smooth random error with this deviation."""
-    steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    knots = max(3, round(along[-1] / ROUGHNESS_LENGTH))
-    errors = rng.normal(0.0, sigma, knots)
-    position = along[:-1] / max(along[-1], 1e-12) * knots
-    moves = np.interp(position, np.arange(knots + 1), [*errors, errors[0]])
-    tangents = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
-    normals = np.stack([tangents[:, 1], -tangents[:, 0]], axis=1)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return points + moves[:, None] * normals / np.maximum(lengths, 1e-12)
-
-
 def mask_drop(masks, share, rng, *_):
     return [mask for mask in masks if rng.random() >= share]
 
@@ -144,13 +110,6 @@ def mask_confuse(masks, share, rng, classes, _):
         others = [other for other in classes if other != number]
         return str(rng.choice(others)) if others and rng.random() < share else number
     return [(confused(number), outline, score) for number, outline, score in masks]
-
-
-def turn_masks(masks, degrees, *_):
-    for _ in range(degrees // 90):
-        masks = [(number, np.stack([outline[:, 1], 1.0 - outline[:, 0]], axis=1), score)
-                 for number, outline, score in masks]
-    return masks
 
 
 def mask_swap(images, share, rng):
@@ -192,12 +151,6 @@ def image_size(text):
     return int(width), int(height)
 
 
-def right_angle(text):
-    if text not in ("90", "180", "270"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not 90, 180 or 270")
-    return int(text)
-
-
 @dataclasses.dataclass
 class Disturbance:
     name: str
@@ -211,8 +164,6 @@ MILLISECONDS, SHARE = number_in(0.0, 1e4), number_in(0.0, 1.0)
 DISTURBANCES = [
     Disturbance("missing", share_of_images, "N/M", "the last N of every M images are missing; 1/M "
                 "drops every M-th image", {"frames": missing}),
-    Disturbance("stall", share_of_images, "N/M",
-                "the last N of every M images show the first one of these N", {"frames": stall}),
     Disturbance("even", None, "", "stamps are even, as if no image were missing", {"frames": even}),
     Disturbance("early", MILLISECONDS, "MS",
                 "of two images, the first one has a stamp MS ms before that of the second one",
@@ -234,14 +185,8 @@ DISTURBANCES = [
                 "image has no depth", {"depth": depth_holes}),
     Disturbance("resize", image_size, "WxH", "images and depth get this size, in px; the settings of "
                 "the camera must then be others", {"image": resize_image, "depth": resize_depth}),
-    Disturbance("turn", right_angle, "DEGREES", "images, depth and masks are turned by 90, 180 or "
-                "270 degrees counterclockwise; the settings of the camera must then be others",
-                {"image": turn, "depth": turn, "masks": turn_masks}),
     Disturbance("mask-shift", number_in(0.0, 1e4), "PX",
                 "each mask is moved by PX px in a random direction", {"masks": mask_shift}),
-    Disturbance("mask-rough", number_in(0.0, 100.0), "PX",
-                "outlines wave by a random error of PX px (standard deviation)",
-                {"masks": mask_rough}),
     Disturbance("mask-drop", SHARE, "SHARE", "this share of the masks is missing",
                 {"masks": mask_drop}),
     Disturbance("mask-confuse", SHARE, "SHARE",

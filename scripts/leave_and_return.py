@@ -16,11 +16,10 @@ to the files of SEQUENCE, so SEQUENCE must not be moved. OUT must not exist, or 
 Exit codes: 0 done, 2 bad usage or input.
 """
 
-import argparse
 import pathlib
 import sys
 
-from support import InputError, exit_code, require
+from support import exit_code, InputError, parser_of, require
 from tum_and_icl import link, read_rows
 
 require("numpy", "PIL")
@@ -157,8 +156,7 @@ def make(arguments):
 
 
 def main(words=None):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("out", type=pathlib.Path, metavar="OUT")
     parser.add_argument("--blank", type=int, default=200, metavar="N",

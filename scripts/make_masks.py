@@ -21,13 +21,12 @@ also needs numpy and contourpy, which come with it. --refine none keeps the mask
 Exit codes: 0 done, 1 interrupted or failed, 2 bad usage or input.
 """
 
-import argparse
 import json
 import pathlib
 import sys
 import time
 
-from support import InputError, exit_code, one_line
+from support import exit_code, InputError, one_line, parser_of
 import run_frames
 from run_frames import VideoFrames, colour_images, orientation_of, turn, turn_back
 
@@ -294,8 +293,7 @@ def make_masks(arguments):
 
 
 def parse_arguments(words):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("--out", type=pathlib.Path,
                         help="folder for masks (default: SEQUENCE/masks, or VIDEO_masks)")

@@ -26,7 +26,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import InputError
+from support import InputError, parser_of
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 MARK = "copy_of_plant_defects"  # a file in the copy
@@ -173,8 +173,7 @@ def run(entries, builder):
 
 
 def main(words=None):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("names", metavar="NAME", nargs="*", help="defects to plant (default: all)")
     parser.add_argument("--list", type=pathlib.Path, metavar="FILE",
                         default=TOP / "scripts" / "defects.json",

@@ -12,7 +12,6 @@ the path is dotted and the time is shaded.
 Exit codes: 0 done, 2 bad usage or input.
 """
 
-import argparse
 import base64
 import io
 import json
@@ -22,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import InputError, exit_code, one_line, programs_folder, read_json, require, value_at
+from support import exit_code, InputError, one_line, parser_of, programs_folder, read_json, require, value_at
 
 require("numpy", "matplotlib")
 import matplotlib  # noqa: E402
@@ -284,8 +283,7 @@ def plot_run(arguments):
 
 
 def main(words=None):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("run_dir", type=pathlib.Path, metavar="RUN_DIR")
     parser.add_argument("--groundtruth", type=pathlib.Path, metavar="FILE",
                         help="true trajectory in TUM's format (default: that of the sequence)")

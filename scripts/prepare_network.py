@@ -13,12 +13,11 @@ network, and a batch becomes one image. OUT is only written if OpenCV runs it.
 Exit codes: 0 done, 1 failed, 2 bad usage or input.
 """
 
-import argparse
 import os
 import pathlib
 import sys
 
-from support import InputError, exit_code, one_line, require
+from support import exit_code, InputError, one_line, parser_of, require
 
 STRIDES = (8, 16, 32)  # px of the input per cell of a map that YOLO decodes
 DEFAULT_SIZE = 640  # px, where the file leaves the size of the input open
@@ -247,8 +246,7 @@ def prepare(arguments):
 
 def main(words=None):
     os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # it also prints its exceptions
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("input", type=pathlib.Path, metavar="IN.onnx")
     parser.add_argument("output", type=pathlib.Path, metavar="OUT.onnx")
     arguments = parser.parse_args(words)

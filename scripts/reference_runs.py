@@ -14,7 +14,6 @@ with it. Without --sequence only the runs on the desk are made. Exit codes: 0 do
 file differs or a run failed; 2 bad usage or input.
 """
 
-import argparse
 import hashlib
 import json
 import pathlib
@@ -23,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import InputError, exit_code, programs_folder, read_json
+from support import exit_code, InputError, parser_of, programs_folder, read_json
 
 HASHED = ("trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "saved.map")
 
@@ -132,8 +131,7 @@ def read_reference(path):
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("action", choices=("store", "compare"))
     parser.add_argument("reference", type=pathlib.Path, help="JSON file with the hashes")
     parser.add_argument("--sequence", type=pathlib.Path, help="RGB-D sequence in TUM's format")

@@ -11,7 +11,7 @@ and ICL-NUIM in the folder data. Of each sequence every row of a table is run wi
 monocular and with depth: recorded sequences begin at another frame for each seed, synthetic ones
 are rendered anew. docs/benchmarks.md explains the tables, the masks and how to use a cluster.
 
-OUT/tables has the tables as index.html, tables.md, tables.tex, tables.csv and tables.json, and
+OUT/tables has the tables as tables.md, tables.tex, tables.csv and tables.json, and
 OUT/runs has each run. If it is interrupted in any way, start it again: finished runs are kept, and
 the tables will be the same. A run is repeated if a program, its settings, preset, sequence or masks
 have changed. Only names and sizes of images are compared.
@@ -20,24 +20,19 @@ Exit codes: 0 done (failed runs are a part of the tables), 1 stopped before its 
 input.
 """
 
-import argparse
-import concurrent.futures
 import dataclasses
 import json
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from support import InputError, Stopped, exit_code, programs_folder, read_json, require, write
+from support import exit_code, InputError, parser_of, programs_folder, read_json, require, write
 
-require("numpy", "matplotlib", "yaml")
+require("numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
 from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
                                  result_file, stop_by_signals, table_lock)
 from paper_tables.files import latex, markdown, markdown_lines  # noqa: E402
-from paper_tables.page import page, shown_runs  # noqa: E402
 from paper_tables.plan import Request, Tools, chosen, make_plan  # noqa: E402
 from paper_tables.sequences import (find_sequences, in_order, read_list, read_sequence,  # noqa: E402
                                     read_suite, suite_file)
@@ -159,7 +154,6 @@ def write_tables(report, out, old):
     for path in (new, former):
         shutil.rmtree(path, ignore_errors=True)
     new.mkdir()
-    grid = None
     if old is not None:
         found = compare_reports(old, json.loads(report.json_text()))
         grid = comparison_grid(found, {name: variant.label for name, variant in
@@ -167,8 +161,7 @@ def write_tables(report, out, old):
         write(new / "compare.json", json.dumps(found, indent=1) + "\n")
         write(new / "compare.md", "\n".join(markdown_lines(grid, 1)).rstrip() + "\n")
     for name, text in (("tables.md", markdown(report)), ("tables.tex", latex(report)),
-                       ("tables.csv", report.csv_text()), ("tables.json", report.json_text()),
-                       ("index.html", page(report, out, grid))):
+                       ("tables.csv", report.csv_text()), ("tables.json", report.json_text())):
         write(new / name, text)
     if target.exists():
         target.rename(former)
@@ -176,24 +169,9 @@ def write_tables(report, out, old):
     shutil.rmtree(former, ignore_errors=True)
 
 
-def make_reports(report, out, program, jobs):
-    """Writes report.html of each run whose curves are shown, unless it is there."""
-    folders = [out / "runs" / run / "out" for run in dict.fromkeys(shown_runs(report))]
-    commands = [[str(program), str(folder), "--report"] for folder in folders
-                if not (folder / "report.html").is_file()]
-
-    def make(command):
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-        if result.returncode != 0:
-            raise Stopped(f"{' '.join(command)}: {result.stderr.strip()[-500:]}")
-    with concurrent.futures.ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
-        list(pool.map(make, commands))
-
-
 def reproduce(arguments):
     out, tools = arguments.out, Tools(arguments.programs.resolve())
     old = read_report(arguments.compare) if arguments.compare else None
-    viewer = tools.path("view") if arguments.reports else None
     paper = read_json(OWN / "paper_tables.json")
     if arguments.suite and not arguments.quiet and not suite_cache(arguments, tools).is_file():
         print("asking make_synthetic for its sequences", file=sys.stderr, flush=True)
@@ -220,20 +198,17 @@ def reproduce(arguments):
             make_all(plan, out, arguments.jobs, arguments.profile, arguments.quiet)
         results = read_results(plan, out)
         report = Report(request, plan, cells, results, paper)
-        if viewer:
-            make_reports(report, out, viewer, arguments.jobs)
         write_tables(report, out, old)
     failed = sum(1 for result in results.values() if result and result["failure"])
     if not arguments.quiet:
-        print(f"{out / 'tables' / 'index.html'}: {len(results)} runs, {failed} failed")
+        print(f"{out / 'tables' / 'tables.md'}: {len(results)} runs, {failed} failed")
 
 
 # ---- arguments
 
 
 def parse_arguments(words):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     data = parser.add_argument_group("sequences")
     data.add_argument("--suite", choices=("synthetic",), help="the sequences of make_synthetic")
     data.add_argument("--data", type=pathlib.Path, action="append", default=[], metavar="FOLDER",
@@ -272,9 +247,6 @@ def parse_arguments(words):
     work.add_argument("--so-far", action="store_true",
                       help="run nothing; tables of the runs that are done")
     work.add_argument("--retry-failed", action="store_true", help="repeat runs that have failed")
-    work.add_argument("--reports", action="store_true",
-                      help="also write report.html of each run whose curves index.html shows, and "
-                           "link to it; some 5 MB each")
     work.add_argument("--compare", type=pathlib.Path, metavar="OLD.json",
                       help="compare with an older tables.json")
     work.add_argument("--quiet", action="store_true", help="print only errors")

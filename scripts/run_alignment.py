@@ -70,14 +70,3 @@ def align_most(source, target, with_scale=False):
         if last < least:
             best, least = found, last
     return best
-
-
-def aligned_errors(estimate, truth, with_scale, find=align):
-    """(stamps, errors m, aligned positions, true positions) of the paired poses of two trajectories
-    (stamps, poses); None if there are too few. find() aligns them."""
-    pairs = pair(estimate[0], truth[0])
-    if len(pairs) < LEAST_POSES:
-        return None
-    source, target = estimate[1][pairs[:, 0], :3], truth[1][pairs[:, 1], :3]
-    moved = move(find(source, target, with_scale), source)
-    return estimate[0][pairs[:, 0]], np.linalg.norm(moved - target, axis=1), moved, target

@@ -10,13 +10,12 @@ object comes first. docs/scene.md explains how the figures are counted.
 Exit codes: 0 done, 2 bad usage or input.
 """
 
-import argparse
 import json
 import pathlib
 import subprocess
 import sys
 
-from support import InputError, programs_folder, read_json
+from support import InputError, parser_of, programs_folder, read_json
 
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
@@ -187,8 +186,7 @@ def measure(run, sequence, arguments, totals):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
                         help="the output folder of a run, and its synthetic sequence. The run must "
                         "have the world of the ground truth, as those of map_objects")

@@ -44,11 +44,15 @@ def exit_code(work, arguments, failure=1):
         return failure
 
 
+def parser_of(doc):
+    """A parser of arguments whose help begins with the text, as it is."""
+    return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
 def check_program(doc, check_tree):
     """The program of a script that checks the repository: prints the faults that check_tree(root) finds,
     one line each. Returns 1 if there are any."""
-    parser = argparse.ArgumentParser(description=doc,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(doc)
     parser.add_argument("root", nargs="?", default=SCRIPTS.parent,
                         help="top folder of the repository (default: the one of this script)")
     faults = check_tree(parser.parse_args().root)

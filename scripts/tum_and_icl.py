@@ -100,7 +100,7 @@ class IclLists:
         for frame in frames:
             if frame.stamp != frame.taken:
                 raise InputError("the images of ICL-NUIM have no time stamps but numbers, so stamps "
-                                 "cannot be wrong and images cannot be shown twice")
+                                 "cannot be wrong")
             index = round(frame.stamp * ICL_RATE)
             lines.append(f"{index} depth/{name_of('depth', frame.depth)} "
                          f"{index} rgb/{name_of('rgb', frame.image)}\n")

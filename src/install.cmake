@@ -60,13 +60,11 @@ install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR
         DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR} COMPONENT library)
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/object_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/support.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
 foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
-               yolo_masks make_masks
-               prepare_network)
+               yolo_masks make_masks prepare_network vslamlab)
   list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/${script}.py)
 endforeach()
 list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/run_demo.sh ${PROJECT_SOURCE_DIR}/scripts/common.sh)
@@ -75,7 +73,11 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/paper_tables
         DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts COMPONENT tools
         PATTERN __pycache__ EXCLUDE)
 hullslam_install_link(hullslam-demo ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/run_demo.sh)
-foreach(script plot_run ablation plot_ablation object_table reproduce_tables make_masks
+foreach(mode mono rgbd stereo)
+  hullslam_install_link(hullslam-vslamlab_hullslam_${mode}
+                        ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/vslamlab.py)
+endforeach()
+foreach(script plot_run ablation reproduce_tables make_masks
                prepare_network)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()

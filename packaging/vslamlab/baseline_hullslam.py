@@ -11,7 +11,7 @@ class HULLSLAM_baseline(BaselineVSLAMLAB):
         super().__init__("hullslam", "HullSLAM", {"verbose": 0, "mode": "mono", "preset": "hullslam", "seed": 0})
         self.color = "green"
         self.modes = ["mono", "rgbd", "stereo"]
-        self.cam_models = ["pinhole", "radtan4", "radtan5"]
+        self.cam_models = ["pinhole", "radtan4", "radtan5", "equid4"]
         self.command_style = "cpp"
 
     def has_source(self):

@@ -64,7 +64,7 @@ class _ORBextractor:
     scaleFactor: float
     """ratio of the sizes of neighbouring levels of the image pyramid (a number above 1 to 2; default 1.2)"""
     subpixel: bool
-    """refine the positions of features within a pixel of their level (true or false (1 or 0); default false)"""
+    """refine the positions of features within a pixel of their level (true or false (1 or 0); default true)"""
 
 class _depth:
     adjustment_pixel_sigma: float
@@ -167,14 +167,10 @@ class _objects_detection:
     """masks whose hull covers a larger share of the image are rejected (a number from 0 to 1; default 0.5)"""
     max_depth_offset: float
     """depth points farther than this from the median depth of their mask are left out, as a share of the larger side of the mask at that depth (a number from 0 to 1000; default 0.75)"""
-    max_depth_points: int
-    """approximate largest number of depth points per mask (an integer from 1 to 10000; default 200)"""
     min_area_px2: float
     """masks whose hull has a smaller area are rejected, px^2 (a number from 0 to 1e+08; default 0)"""
     min_keypoints: int
     """masks that contain fewer keypoints are rejected (an integer from 0 to 10000; default 0)"""
-    min_line_px: float
-    """shorter edges give no line, px (a number from 0 to 1000; default 5)"""
     min_score: float
     """masks with a lower score are rejected (a number from 0 to 1; default 0)"""
     min_side_px: float
@@ -211,12 +207,8 @@ class _objects_pose:
 class _objects_refinement:
     depth_points: int
     """largest number of depth points that are used per detection; 0: none (an integer from 0 to 10000; default 20)"""
-    landmark_sigma: float
-    """standard deviation of the distance of landmarks from the surface of a quadric without depth, as a share of their distance from the camera (a number from 0.001 to 100; default 0.05)"""
     loss: Literal["none", "huber", "cauchy", "tukey"]
     """robust loss of each residual (one of: none, huber, cauchy, tukey; default huber)"""
-    loss_px: float
-    """scale of the robust loss, px, for a line with the standard deviation objects.refinement.max_misfit_px (a number from 0.1 to 1000; default 8)"""
     max_effective_lines: float
     """largest number of effective lines per detection (a number from 0.1 to 1000; default 4)"""
     max_misfit_px: float

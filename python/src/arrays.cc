@@ -78,7 +78,7 @@ bool HasImageLayout(const py::array& array, int channels) {
 }
 
 // `array` has two or three dimensions.
-PixelView View(py::array array, const std::string& name, cv::Size size = {}) {
+PixelSpan View(py::array array, const std::string& name, cv::Size size = {}) {
   for (int axis = 0; axis < 2; ++axis) {
     if (array.shape(axis) < 1 || array.shape(axis) > kLargestSide) {
       throw InputError(name + " has the shape " + ShapeOf(array) +
@@ -110,7 +110,7 @@ PixelView View(py::array array, const std::string& name, cv::Size size = {}) {
 
 }  // namespace
 
-PixelView ViewImage(const py::object& pixels, const std::string& name, cv::Size size) {
+PixelSpan ImageOf(const py::object& pixels, const std::string& name, cv::Size size) {
   py::array array = AsArray(pixels, name);
   CheckType(array, name, {"uint8"});
   const bool is_grey = array.ndim() == 2;
@@ -122,13 +122,13 @@ PixelView ViewImage(const py::object& pixels, const std::string& name, cv::Size 
   return View(std::move(array), name, size);
 }
 
-PixelView ViewDepth(const py::object& pixels, cv::Size size) {
-  return pixels.is_none() ? PixelView()
-                          : ViewPlane(pixels, "the depth image", {"uint16", "float32"}, size);
+PixelSpan SpanOfDepth(const py::object& pixels, cv::Size size) {
+  return pixels.is_none() ? PixelSpan()
+                          : PlaneOf(pixels, "the depth image", {"uint16", "float32"}, size);
 }
 
-PixelView ViewPlane(const py::object& pixels, const std::string& name,
-                    const std::vector<std::string>& types, cv::Size size) {
+PixelSpan PlaneOf(const py::object& pixels, const std::string& name,
+                  const std::vector<std::string>& types, cv::Size size) {
   py::array array = AsArray(pixels, name);
   CheckType(array, name, types);
   if (array.ndim() != 2) {
@@ -137,17 +137,17 @@ PixelView ViewPlane(const py::object& pixels, const std::string& name,
   return View(std::move(array), name, size);
 }
 
-StackView ViewStack(const py::object& pixels, const std::string& name) {
+StackSpan StackOf(const py::object& pixels, const std::string& name) {
   const py::array stack = AsArray(pixels, name);
   CheckType(stack, name, {"bool", "uint8"});
   if (stack.ndim() != 3) {
     throw InputError(name + " has the shape " + ShapeOf(stack) +
                      ", expected (objects, height, width)");
   }
-  StackView view;
+  StackSpan view;
   py::list planes;  // each may be a copy of its own
   for (py::ssize_t i = 0; i < stack.shape(0); ++i) {
-    PixelView plane = View(py::array(stack[py::int_(i)]), name);
+    PixelSpan plane = View(py::array(stack[py::int_(i)]), name);
     view.images.push_back(std::move(plane.image));
     planes.append(std::move(plane.array));
   }

@@ -18,7 +18,7 @@ namespace py = pybind11;
 
 // Pixels of a numpy array. `image` does not own them, so `array` must live as long as `image`. It
 // is the array of the caller if its layout fits, else a copy.
-struct PixelView {
+struct PixelSpan {
   py::array array;
   cv::Mat image;
 };
@@ -28,19 +28,19 @@ struct PixelView {
 
 // A colour or grey image: uint8, of shape (height, width) or (height, width, 3 or 4). Throws
 // InputError that starts with `name` for anything else.
-PixelView ViewImage(const py::object& pixels, const std::string& name, cv::Size size);
+PixelSpan ImageOf(const py::object& pixels, const std::string& name, cv::Size size);
 // A depth image (height, width): uint16 in units of 1 / DepthMapFactor metres, or float32 in
 // metres. None gives an empty image.
-PixelView ViewDepth(const py::object& pixels, cv::Size size);
+PixelSpan SpanOfDepth(const py::object& pixels, cv::Size size);
 // An image of one channel (height, width) whose type has one of these names: "bool", "uint8" ...
-PixelView ViewPlane(const py::object& pixels, const std::string& name,
-                    const std::vector<std::string>& types, cv::Size size = {});
+PixelSpan PlaneOf(const py::object& pixels, const std::string& name,
+                  const std::vector<std::string>& types, cv::Size size = {});
 // The objects of a stack (count, height, width) of bool or uint8, one image per object.
-struct StackView {
+struct StackSpan {
   py::list planes;  // arrays of the pixels of `images`, which they keep alive
   std::vector<cv::Mat> images;
 };
-StackView ViewStack(const py::object& pixels, const std::string& name);
+StackSpan StackOf(const py::object& pixels, const std::string& name);
 
 // An array that shares the pixels of the image and keeps them alive.
 py::array ToArray(const cv::Mat& image);

@@ -26,7 +26,7 @@ struct LiveMapper {
 void AddView(LiveMapper& live, const py::object& world_from_cam, const MaskList& masks,
              const py::object& depth, double timestamp) {
   const Rigid3 pose = ToPose(world_from_cam, "world_from_cam");
-  const PixelView depths = ViewDepth(depth, {live.camera.width, live.camera.height});
+  const PixelSpan depths = SpanOfDepth(depth, {live.camera.width, live.camera.height});
   CheckStamp(timestamp);
   WithoutGil([&] {
     const std::lock_guard lock(live.mutex);

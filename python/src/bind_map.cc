@@ -18,7 +18,7 @@
 #include "eval/object_metrics.h"
 #include "hullslam/map_files/map_file.h"
 #include "module.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "types.h"
 #include "without_gil.h"
 
@@ -140,23 +140,23 @@ py::array_t<double> DualQuadricOf(const MapObject& object) {
 }
 
 // The object with its fit, as in objects.json.
-ReportedObject ReportOf(const MapObject& object) {
-  ReportedObject reported =
-      ReportObject(*object.view.map, ObjectId(static_cast<uint32_t>(object.id)), object.object);
-  reported.fit = MeasureObject(reported.ellipsoid, reported.views, object.view.camera);
+ObjectResult ResultOf(const MapObject& object) {
+  ObjectResult reported =
+      ResultOfObject(*object.view.map, ObjectId(static_cast<uint32_t>(object.id)), object.object);
+  reported.fit = MeasureObject(reported.ellipsoid, reported.observations, object.view.camera);
   return reported;
 }
 
 std::optional<double> ParallaxOfObject(const MapObject& object) {
-  return object.object.has_shape ? std::optional(ParallaxOf(ReportOf(object))) : std::nullopt;
+  return object.object.has_shape ? std::optional(ParallaxOf(ResultOf(object))) : std::nullopt;
 }
 
 std::optional<double> SiouOfObject(const MapObject& object) {
-  return object.object.has_shape ? ReportOf(object).fit.siou : std::nullopt;
+  return object.object.has_shape ? ResultOf(object).fit.siou : std::nullopt;
 }
 
 double QualityOfObject(const MapObject& object) {
-  return object.object.has_shape ? QualityOf(ReportOf(object)) : 0.0;
+  return object.object.has_shape ? QualityOf(ResultOf(object)) : 0.0;
 }
 
 void BindReliability(py::class_<MapObject>& object) {

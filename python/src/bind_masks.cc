@@ -35,7 +35,7 @@ std::vector<double> ScoresOf(std::optional<std::vector<double>> scores, size_t c
 
 MaskList FromStack(const py::object& stack, const std::vector<std::string>& classes,
                    std::optional<std::vector<double>> given_scores) {
-  const StackView view = ViewStack(stack, "the stack of masks");
+  const StackSpan view = StackOf(stack, "the stack of masks");
   const std::vector<cv::Mat>& images = view.images;
   CheckCount("classes", classes.size(), images.size());
   const std::vector<double> scores = ScoresOf(std::move(given_scores), images.size());
@@ -57,7 +57,7 @@ MaskList FromStack(const py::object& stack, const std::vector<std::string>& clas
 
 MaskList FromLabels(const py::object& labels, const std::map<int, std::string>& classes,
                     const std::map<int, double>& scores) {
-  const PixelView view = ViewPlane(labels, "the image of labels", {"uint8", "uint16", "int32"});
+  const PixelSpan view = PlaneOf(labels, "the image of labels", {"uint8", "uint16", "int32"});
   std::map<int, InstanceClass> instances;
   for (const auto& [number, label] : classes) {
     const auto score = scores.find(number);

@@ -25,7 +25,7 @@ class SharedSegmenter {
       : segmenter_(WithoutGil([&] { return std::make_unique<Segmenter>(network, options); })) {}
 
   MaskList Segment(const py::object& image) {
-    const PixelView view = ViewImage(image, "the image", {});
+    const PixelSpan view = ImageOf(image, "the image", {});
     return WithoutGil([&] {
       const std::lock_guard lock(mutex_);
       return MaskList{.masks = segmenter_->Segment(view.image), .size = view.image.size()};

@@ -38,7 +38,7 @@ SettingsTable MakeTable(const std::optional<std::filesystem::path>& file,
   const std::optional<Preset> read = preset ? std::optional(ReadPreset(*preset)) : std::nullopt;
   const SettingsSources sources{
       .preset = read ? &*read : nullptr, .overrides = overrides, .overrides_origin = kOrigin};
-  SettingsReport report;
+  SettingsNotes report;
   SystemOptions options = file ? ReadSettings(*file, sources, report)
                                : MakeSettings(CameraOf(overrides), kOrigin, sources, report);
   return {.options = std::move(options), .warnings = std::move(report.warnings)};

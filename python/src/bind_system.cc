@@ -77,17 +77,18 @@ std::vector<InstanceMask> MasksOf(const MaskList* masks, const cv::Mat& image) {
 }
 
 FrameReport Track(LiveSystem& system, const py::object& image, const py::object& depth,
-                  const MaskList* masks, const py::object& right, double timestamp) {
+                  const MaskList* masks, const py::object& right, const MaskList* masks_right,
+                  double timestamp) {
   const PinholeCamera& camera = system.options().camera;
   const cv::Size size(camera.width, camera.height);
-  const PixelView pixels = ViewImage(image, "the image", size);
-  const PixelView depths = ViewDepth(depth, size);
-  const PixelView rights =
-      right.is_none() ? PixelView() : ViewImage(right, "the right image", size);
+  const PixelSpan pixels = ImageOf(image, "the image", size);
+  const PixelSpan depths = SpanOfDepth(depth, size);
+  const PixelSpan rights = right.is_none() ? PixelSpan() : ImageOf(right, "the right image", size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
+  std::vector<InstanceMask> in_right = MasksOf(masks_right, pixels.image);
   return WithoutGil([&] {
-    return system.Track(timestamp, pixels.image, {depths.image, rights.image},
-                        std::move(instances));
+    return system.Track(timestamp, pixels.image, {depths.image, rights.image}, std::move(instances),
+                        std::move(in_right));
   });
 }
 
@@ -214,7 +215,7 @@ void BindSystem(py::module_& module) {
            "seed: seed of all random choices.")
       .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
            py::arg("masks") = py::none(), py::kw_only(), py::arg("right") = py::none(),
-           py::arg("timestamp"),
+           py::arg("masks_right") = py::none(), py::arg("timestamp"),
            "Finds the pose of the camera in the next frame: TrackResult.\n\n"
            "image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV\n"
            "reads images (red first with the setting Camera.RGB). It is copied only if its rows\n"
@@ -224,6 +225,7 @@ void BindSystem(py::module_& module) {
            "mode 'rgbd'.\n"
            "masks: Masks of the objects in the image, or None.\n"
            "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
+           "masks_right: Masks of the objects in the right image, or None.\n"
            "timestamp: s, larger than that of the frame before.\n"
            "Raises InputError for anything else; a refused frame changes nothing.")
       .def(

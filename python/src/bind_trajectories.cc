@@ -19,8 +19,8 @@ namespace hullslam::python {
 namespace {
 
 struct TrajectoryErrors {
-  AteReport ate;
-  RpeReport rpe;
+  AteResult ate;
+  RpeResult rpe;
   std::string alignment;
 };
 
@@ -107,7 +107,7 @@ TrajectoryErrors Evaluate(const py::object& groundtruth, const py::object& estim
   });
 }
 
-std::optional<double> RmseOf(const RpeReport& rpe, const ErrorStatistics& errors) {
+std::optional<double> RmseOf(const RpeResult& rpe, const ErrorStatistics& errors) {
   return rpe.ok() ? std::optional(errors.rmse) : std::nullopt;
 }
 

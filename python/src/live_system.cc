@@ -109,7 +109,8 @@ void CheckSecond(SensorKind sensor, const SecondImage& second) {
 }  // namespace
 
 FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const SecondImage& second,
-                              std::vector<InstanceMask> masks) {
+                              std::vector<InstanceMask> masks,
+                              std::vector<InstanceMask> right_masks) {
   const std::lock_guard lock(mutex_);
   System& system = Open();
   if (is_finished_) {
@@ -127,7 +128,7 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const Seco
   }
   CheckSecond(options_.sensor, second);
   system.Track(timestamp, image, second.right.empty() ? second.depth : second.right,
-               std::move(masks));
+               std::move(masks), std::move(right_masks));
   last_stamp_ = timestamp;
   return std::exchange(report_, {});
 }

@@ -35,7 +35,7 @@ class LiveSystem {
   // Throws InputError after Finish() and for a time stamp that is not after the last one, and
   // otherwise as System::Track does. A refused frame changes nothing.
   FrameReport Track(double timestamp, const cv::Mat& image, const SecondImage& second,
-                    std::vector<InstanceMask> masks);
+                    std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks);
   // `is_over` is asked from time to time whether to end early, see System::Finish.
   void Finish(const std::function<bool()>& is_over);
   void Reset();

@@ -29,12 +29,6 @@ def spread(values):
             "max": max(known.values()), "values": known}
 
 
-def median_run(entry):
-    """The seed whose value is nearest to the median; of equal ones the first."""
-    return min(sorted(entry["values"]),
-               key=lambda seed: abs(entry["values"][seed] - entry["median"]))
-
-
 def columns_of(table, mode):
     """(key, figure, column) of each column of a table."""
     return [(key, FIGURES[key], column) for key in table.figures

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the Markdown, LaTeX and HTML files have in common: grids of short texts."""
+"""What the Markdown and LaTeX files have in common: grids of short texts."""
 
 import dataclasses
 
 from paper_tables.figures import FIGURES
-from paper_tables.tables import COMPARED, MODE_TITLES, columns_of, median_run
+from paper_tables.tables import COMPARED, MODE_TITLES, columns_of
 
 DASH = "–"
 
@@ -13,9 +13,7 @@ DASH = "–"
 class Text:
     """A text of a grid."""
     text: str
-    run: str = None  # the run that it comes from
     is_best: bool = False
-    values: tuple = ()  # (text, run) of each single run
 
 
 @dataclasses.dataclass
@@ -48,8 +46,7 @@ def entry_text(cell, column, figure):
     text = number(entry["median"], figure)
     if len(entry["values"]) > 1:
         text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
-    return Text(text, cell["runs"][median_run(entry)], values=tuple(
-        (number(value, figure), cell["runs"][seed]) for seed, value in sorted(entry["values"].items())))
+    return Text(text)
 
 
 # ---- overviews: a row for each system, a column for each sequence
@@ -82,8 +79,7 @@ def overview_cell(report, block, sequence, cell, best):
     paper = report.paper_figure(block, cell, sequence, key)
     if paper is not None:
         text += f" [{number(paper, figure)}]"
-    first = entry_text(cell, columns[0], figure)
-    return Text(text, first.run, cell["row"] in best, first.values)
+    return Text(text, cell["row"] in best)
 
 
 def sequence_heading(report, name):

@@ -25,7 +25,7 @@ struct BagTopic {
 };
 
 // Where a message is in its file. What the numbers mean is known to the reader of the format.
-struct MessagePlace {
+struct MessagePosition {
   uint64_t chunk = 0;
   uint64_t offset = 0;
   uint64_t size = 0;
@@ -34,7 +34,7 @@ struct MessagePlace {
 struct BagMessage {
   size_t topic = 0;    // index into Bag::topics()
   int64_t logged = 0;  // the time at which it was recorded, ns
-  MessagePlace place;
+  MessagePosition place;
   std::string_view bytes;  // only valid during the visit
 };
 
@@ -51,7 +51,7 @@ class Bag {
   // of what is broken. A file that ends too early is read up to there, with a warning.
   virtual void Scan(const std::function<void(const BagMessage& message)>& visit) = 0;
   // A message that Scan() visited. Messages that are near to each other in the file are read fast.
-  virtual std::string Read(const MessagePlace& place) = 0;
+  virtual std::string Read(const MessagePosition& place) = 0;
 
   // Grows during Scan(): the topic of a message is known before the message.
   const std::vector<BagTopic>& topics() const { return topics_; }

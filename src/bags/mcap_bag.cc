@@ -67,7 +67,7 @@ std::string McapBag::LoadChunk(uint64_t position, std::string_view record) const
   return content;
 }
 
-void McapBag::Take(McapRecord kind, std::string_view content, const MessagePlace& place,
+void McapBag::Take(McapRecord kind, std::string_view content, const MessagePosition& place,
                    const std::function<void(const BagMessage& message)>& visit) {
   ByteReader reader(content, Place(place.chunk == kNoChunk ? place.offset : place.chunk));
   if (kind == McapRecord::kSchema) {
@@ -149,7 +149,7 @@ void McapBag::Scan(const std::function<void(const BagMessage& message)>& visit) 
   }
 }
 
-std::string McapBag::Read(const MessagePlace& place) {
+std::string McapBag::Read(const MessagePosition& place) {
   if (place.chunk == kNoChunk) {
     return file_.Read(place.offset, place.size);
   }

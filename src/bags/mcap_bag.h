@@ -39,7 +39,7 @@ class McapBag final : public Bag {
   explicit McapBag(const std::filesystem::path& path) : file_(path), expansion_(path) {}
 
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
-  std::string Read(const MessagePlace& place) override;
+  std::string Read(const MessagePosition& place) override;
 
  private:
   struct Channel {
@@ -51,7 +51,7 @@ class McapBag final : public Bag {
   // The content of the chunk record whose content begins at `position`.
   std::string LoadChunk(uint64_t position, std::string_view record) const;
   // Records that may be in a chunk: schemas, channels and messages. `place` is that of the content.
-  void Take(McapRecord kind, std::string_view content, const MessagePlace& place,
+  void Take(McapRecord kind, std::string_view content, const MessagePosition& place,
             const std::function<void(const BagMessage& message)>& visit);
   void TakeChunk(uint64_t position, std::string_view record,
                  const std::function<void(const BagMessage& message)>& visit);

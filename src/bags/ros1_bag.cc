@@ -99,7 +99,7 @@ void Ros1Bag::TakeConnection(const Fields& fields, std::string_view data, uint64
                type == connection.end() ? "no type" : type->second, MessageCoding::kRos1);
 }
 
-void Ros1Bag::TakeMessage(const Fields& fields, std::string_view data, const MessagePlace& place,
+void Ros1Bag::TakeMessage(const Fields& fields, std::string_view data, const MessagePosition& place,
                           const std::function<void(const BagMessage& message)>& visit) {
   const uint64_t position = place.chunk == kNoChunk ? place.offset : place.chunk;
   const auto topic = topics_of_connections_.find(NumberOf<uint32_t>(fields, "conn", position));
@@ -121,7 +121,7 @@ void Ros1Bag::TakeChunk(const Record& record, const std::function<void(const Bag
   while (reader.left() > 0) {
     const Fields fields = ParseFields(reader.GetRaw(reader.GetCount(1)), record.position);
     const size_t size = reader.GetCount(1);
-    const MessagePlace place{record.position, chunk.size() - reader.left(), size};
+    const MessagePosition place{record.position, chunk.size() - reader.left(), size};
     const std::string_view data = reader.GetRaw(size);
     const auto kind = NumberOf<uint8_t>(fields, "op", record.position);
     if (kind == kConnectionOp) {
@@ -157,7 +157,7 @@ void Ros1Bag::Scan(const std::function<void(const BagMessage& message)>& visit) 
   }
 }
 
-std::string Ros1Bag::Read(const MessagePlace& place) {
+std::string Ros1Bag::Read(const MessagePosition& place) {
   if (place.chunk == kNoChunk) {
     return file_.Read(place.offset, place.size);
   }

@@ -23,7 +23,7 @@ class Ros1Bag final : public Bag {
   explicit Ros1Bag(const std::filesystem::path& path) : file_(path), expansion_(path) {}
 
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
-  std::string Read(const MessagePlace& place) override;
+  std::string Read(const MessagePosition& place) override;
 
  private:
   // The fields of a record's header by their names.
@@ -44,7 +44,7 @@ class Ros1Bag final : public Bag {
   bool ReadRecord(uint64_t position, Record& record) const;
   std::string LoadChunk(const Record& record) const;
   void TakeConnection(const Fields& fields, std::string_view data, uint64_t position);
-  void TakeMessage(const Fields& fields, std::string_view data, const MessagePlace& place,
+  void TakeMessage(const Fields& fields, std::string_view data, const MessagePosition& place,
                    const std::function<void(const BagMessage& message)>& visit);
   void TakeChunk(const Record& record, const std::function<void(const BagMessage&)>& visit);
 

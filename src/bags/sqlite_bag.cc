@@ -167,7 +167,7 @@ void SqliteBag::Scan(const std::function<void(const BagMessage& message)>& visit
   }
 }
 
-std::string SqliteBag::Read(const MessagePlace& place) {
+std::string SqliteBag::Read(const MessagePosition& place) {
   if (read_ == nullptr) {
     read_ = Prepare("SELECT data FROM messages WHERE id = ?");
   }

@@ -27,7 +27,7 @@ class SqliteBag final : public Bag {
 
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
   // The offset of a place is the id of the message.
-  std::string Read(const MessagePlace& place) override;
+  std::string Read(const MessagePosition& place) override;
 
  private:
   struct Close {

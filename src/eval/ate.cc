@@ -81,13 +81,13 @@ size_t CountDuring(const Trajectory& reference, const Trajectory& estimate) {
 
 }  // namespace
 
-AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
+AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options) {
   const double max_difference =
       options.max_difference.value_or(DefaultMaxDifference(options.pairing));
   const std::vector<IndexPair> pairs =
       PairPoses(reference, estimate, options.pairing, max_difference);
-  AteReport report;
+  AteResult report;
   report.pairs = pairs.size();
   report.estimate_poses = estimate.size();
   report.reference_poses = reference.size();
@@ -120,7 +120,7 @@ AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   return report;
 }
 
-std::string DescribeMissingPairs(const AteReport& report) {
+std::string DescribeMissingPairs(const AteResult& report) {
   constexpr double kEnough = 0.9;
   const auto paired = static_cast<size_t>(
       std::lround(report.coverage * static_cast<double>(report.estimate_poses)));

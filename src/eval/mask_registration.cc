@@ -13,7 +13,7 @@ namespace {
 constexpr int kOrientations = 8;
 
 // The place in the stored image, in shares of its size, of a place (u, v) in the turned image.
-Eigen::Vector2d StoredPlace(int orientation, double u, double v) {
+Eigen::Vector2d StoredPosition(int orientation, double u, double v) {
   switch (orientation) {
     case 2:
       return {1.0 - u, v};
@@ -43,7 +43,7 @@ void MaskRegistration::Add(const cv::Mat& grey, std::span<const InstanceMask> ma
     const double u = (point.x() + 0.5) / grey.cols;
     const double v = (point.y() + 0.5) / grey.rows;
     for (int orientation = 1; orientation <= kOrientations; ++orientation) {
-      const Eigen::Vector2d place = StoredPlace(orientation, u, v);
+      const Eigen::Vector2d place = StoredPosition(orientation, u, v);
       const int x = std::clamp(static_cast<int>(place.x() * grey.cols), 0, grey.cols - 1);
       const int y = std::clamp(static_cast<int>(place.y() * grey.rows), 0, grey.rows - 1);
       gradients_[static_cast<size_t>(orientation)] += gradient.at<float>(y, x);

@@ -95,10 +95,10 @@ std::optional<size_t> FindShown(std::span<const TrueObject> truths,
 }  // namespace
 
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
-                                       const ObjectReport& report, const Sim3& truth_from_map) {
+                                       const ObjectResults& report, const Sim3& truth_from_map) {
   GroundtruthComparison comparison;
   comparison.times_mapped.assign(truths.size(), 0);
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     if (object.state != ObjectState::kMapped) {
       continue;
     }

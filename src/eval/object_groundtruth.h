@@ -12,7 +12,7 @@
 
 #include "eval/true_object.h"
 #include "hullslam/geometry/sim3.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 
 namespace hullslam {
 
@@ -38,7 +38,7 @@ struct GroundtruthComparison {
 // not matter. Moving true objects are never assigned. The true objects are in metres;
 // `truth_from_map` has the scale 1 if the map is in metres too.
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
-                                       const ObjectReport& report, const Sim3& truth_from_map);
+                                       const ObjectResults& report, const Sim3& truth_from_map);
 
 // How many of the true objects that should be mapped were mapped, and how often.
 struct TruthCounts {

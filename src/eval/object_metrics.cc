@@ -79,24 +79,24 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
-double OverlapWithHull(const Polygon& polygon, const ReportedView& view,
+double OverlapWithHull(const Polygon& polygon, const ObservationResult& observation,
                        const Eigen::AlignedBox2d& image) {
-  const Polygon hull = ClipToBox(view.hull, image);
-  return view.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
-                     : IntersectionOverUnion(polygon, hull);
+  const Polygon hull = ClipToBox(observation.hull, image);
+  return observation.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
+                            : IntersectionOverUnion(polygon, hull);
 }
 
-double OverlapWithMask(const Polygon& polygon, const ReportedView& view,
+double OverlapWithMask(const Polygon& polygon, const ObservationResult& observation,
                        const Eigen::AlignedBox2d& image) {
-  return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), polygon);
+  return IntersectionOverUnion(ClipToBox(WithPositiveArea(observation.contour), image), polygon);
 }
 
-void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse, const ReportedView& view,
-                  const Eigen::Matrix3d& k, ObjectFit& fit) {
-  const Eigen::Matrix4d quadric = (view.cam_from_world * ellipsoid).DualQuadric();
+void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse,
+                  const ObservationResult& observation, const Eigen::Matrix3d& k, ObjectFit& fit) {
+  const Eigen::Matrix4d quadric = (observation.cam_from_world * ellipsoid).DualQuadric();
   Mean mtd;
   Mean tangent;
-  for (const auto& [line, is_one_sided] : view.lines) {
+  for (const auto& [line, is_one_sided] : observation.lines) {
     if (is_one_sided) {
       continue;
     }
@@ -111,56 +111,58 @@ void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse, const Repo
   fit.tangent_px = tangent.Value();
 }
 
-ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const ReportedView& view) {
-  const bool has_mask = !view.is_box && view.contour.size() >= 3;
+ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid,
+                    const ObservationResult& observation) {
+  const bool has_mask = !observation.is_box && observation.contour.size() >= 3;
   ObjectFit fit;
   fit.observations = 1;
   fit.siou = 0.0;
   fit.siou_mask = has_mask ? std::optional(0.0) : std::nullopt;
-  const std::optional<Ellipse> ellipse = ProjectEllipsoid(image.k, view.cam_from_world, ellipsoid);
+  const std::optional<Ellipse> ellipse =
+      ProjectEllipsoid(image.k, observation.cam_from_world, ellipsoid);
   if (!ellipse) {
     return fit;
   }
   const Polygon polygon =
       VisiblePart(ellipse->Polygon(kEllipseCorners), image.camera, image.bounds);
-  fit.siou = OverlapWithHull(polygon, view, image.bounds);
+  fit.siou = OverlapWithHull(polygon, observation, image.bounds);
   if (has_mask) {
-    fit.siou_mask = OverlapWithMask(polygon, view, image.bounds);
+    fit.siou_mask = OverlapWithMask(polygon, observation, image.bounds);
   }
-  MeasureLines(ellipsoid, *ellipse, view, image.k, fit);
+  MeasureLines(ellipsoid, *ellipse, observation, image.k, fit);
   return fit;
 }
 
 }  // namespace
 
-ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
+ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ObservationResult> observations,
                         const PinholeCamera& camera) {
   const ImagePlane image(camera);
   FitMean mean;
-  for (const ReportedView& view : views) {
-    mean.Add(MeasureIn(image, ellipsoid, view));
+  for (const ObservationResult& observation : observations) {
+    mean.Add(MeasureIn(image, ellipsoid, observation));
   }
   return mean.Value();
 }
 
-void MeasureObjects(ObjectReport& report) {
-  for (ReportedObject& object : report.objects) {
-    object.fit = MeasureObject(object.ellipsoid, object.views, report.camera);
+void MeasureObjects(ObjectResults& report) {
+  for (ObjectResult& object : report.objects) {
+    object.fit = MeasureObject(object.ellipsoid, object.observations, report.camera);
   }
 }
 
-ObjectReport MeasuredObjects(const Map& map, const PinholeCamera& camera,
-                             const std::string& sequence) {
-  ObjectReport report = ReportObjects(map, camera);
+ObjectResults MeasuredObjects(const Map& map, const PinholeCamera& camera,
+                              const std::string& sequence) {
+  ObjectResults report = CollectObjectResults(map, camera);
   report.sequence = sequence;
   MeasureObjects(report);
   return report;
 }
 
-MapFit SummarizeFits(const ObjectReport& report) {
+MapFit SummarizeFits(const ObjectResults& report) {
   MapFit summary;
   FitMean mean;
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     if (object.state == ObjectState::kMapped) {
       ++summary.objects;
       mean.Add(object.fit);

@@ -5,30 +5,31 @@
 #include <span>
 #include <string>
 
-#include "report/object_report.h"
+#include "report/object_results.h"
 
 namespace hullslam {
 
-// Measures the agreement of the projected ellipses of an ellipsoid with its views:
+// Measures the agreement of the projected ellipses of an ellipsoid with its observations:
 //   siou        intersection over union with the hull, both clipped to the undistorted image. If
-//               the view has only a box, the bounding box of the ellipse is compared with it.
+//               the observation has only a box, the bounding box of the ellipse is compared with
+//               it.
 //   siou_mask   the same with the contour; absent for a box
 //   mtd_m2      mean of |pi^T Q* pi| over the planes of the two-sided lines, with unit normals
 //               (Yu et al. 2025, Eq. 8); absent without such lines
 //   tangent_px  mean distance of these lines from the parallel tangents of the ellipse; absent
 //               without such lines
 //
-// An ellipsoid that is not wholly in front of the camera has no projected ellipse. In such a view
-// the overlaps are 0 and the distances are absent. Returns the means over the views; all values are
-// absent if there are no views.
-ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
+// An ellipsoid that is not wholly in front of the camera has no projected ellipse. In such an
+// observation the overlaps are 0 and the distances are absent. Returns the means over the
+// observations; all values are absent if there are no observations.
+ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ObservationResult> observations,
                         const PinholeCamera& camera);
 
 // Fills in the fit of every object.
-void MeasureObjects(ObjectReport& report);
-// The objects of a map with their fits. `sequence` is ObjectReport::sequence.
-ObjectReport MeasuredObjects(const Map& map, const PinholeCamera& camera,
-                             const std::string& sequence = {});
+void MeasureObjects(ObjectResults& report);
+// The objects of a map with their fits. `sequence` is ObjectResults::sequence.
+ObjectResults MeasuredObjects(const Map& map, const PinholeCamera& camera,
+                              const std::string& sequence = {});
 
 // Summary of all mapped objects: means of their fits and sums of their counts.
 struct MapFit {
@@ -36,6 +37,6 @@ struct MapFit {
   ObjectFit mean;
 };
 
-MapFit SummarizeFits(const ObjectReport& report);
+MapFit SummarizeFits(const ObjectResults& report);
 
 }  // namespace hullslam

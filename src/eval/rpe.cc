@@ -34,7 +34,7 @@ Rigid3 Motion(const Trajectory& trajectory, size_t start, size_t end) {
 
 }  // namespace
 
-RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
+RpeResult EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
                       const RpeOptions& options) {
   Check(options.delta > 0.0, "the length of motions is not above 0");
   Check(options.unit == RpeOptions::Unit::kSeconds || options.delta >= 1.0,
@@ -58,7 +58,7 @@ RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
       rotations.push_back(LogSo3(error.rotation).norm() * 180.0 / std::numbers::pi);
     }
   }
-  RpeReport report;
+  RpeResult report;
   report.motions = translations.size();
   if (translations.empty()) {
     report.failure = "no two paired poses are far enough apart in time";
@@ -70,7 +70,7 @@ RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
 }
 
 std::string DescribeSwappedRotations(const Trajectory& reference, const Trajectory& estimate,
-                                     const RpeReport& report, const RpeOptions& options) {
+                                     const RpeResult& report, const RpeOptions& options) {
   constexpr double kGood = 1.0;  // degrees
   constexpr double kClearly = 5.0;
   if (!report.ok() || report.rotation.median <= kGood) {

@@ -9,12 +9,12 @@ namespace {
 // The factor that converts errors of orientation (radians) to errors of position (m): the mean
 // distance of the mapped objects from the keyframes that observe them. 1 if no object is mapped.
 // `scale` is the length of one unit of the map in metres.
-double MeanDistance(const ObjectReport& report, double scale) {
+double MeanDistance(const ObjectResults& report, double scale) {
   double sum = 0.0;
   size_t count = 0;
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     if (object.state == ObjectState::kMapped) {
-      for (const ReportedView& view : object.views) {
+      for (const ObservationResult& view : object.observations) {
         sum += (view.cam_from_world * object.ellipsoid.world_from_object.translation).norm();
         ++count;
       }
@@ -25,7 +25,7 @@ double MeanDistance(const ObjectReport& report, double scale) {
 
 }  // namespace
 
-Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectReport& report) {
+Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectResults& report) {
   const double scale = poses.ate.reference_from_estimate.scale;
   std::vector<Rigid3> truths;
   std::vector<Rigid3> estimates;
@@ -40,7 +40,7 @@ Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectReport& report) {
 }
 
 TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
-                              const ObjectReport& report, std::vector<size_t> sightings,
+                              const ObjectResults& report, std::vector<size_t> sightings,
                               size_t min_masks) {
   TruthEvaluation evaluation;
   evaluation.truths = scene.objects;

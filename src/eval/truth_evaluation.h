@@ -29,7 +29,7 @@ struct TruthEvaluation {
 struct AlignedPoses {
   const Trajectory& groundtruth;
   const Trajectory& run;
-  const AteReport& ate;  // of these two; ok()
+  const AteResult& ate;  // of these two; ok()
   AlignmentKind alignment;
 };
 
@@ -38,12 +38,12 @@ struct AlignedPoses {
 // the world if the camera hardly moved: an error of orientation (radians) counts as much as an
 // error of position (m) at the mean distance of the mapped objects from the keyframes that observe
 // them.
-Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectReport& report);
+Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectResults& report);
 
 // Compares the mapped objects of a report with the true objects. `sightings` counts the masks of
 // each true object during the run (CountSightings()); empty if the sequence has no masks.
 TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
-                              const ObjectReport& report, std::vector<size_t> sightings,
+                              const ObjectResults& report, std::vector<size_t> sightings,
                               size_t min_masks);
 
 }  // namespace hullslam

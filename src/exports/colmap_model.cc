@@ -13,15 +13,17 @@
 namespace hullslam {
 namespace {
 
-constexpr uint32_t kCameraId = 1;
+constexpr uint32_t kRight = 2;      // id of the right camera of a pair
 constexpr double kHalfPixel = 0.5;  // COLMAP's pixels minus ours
 
 // The index of the keypoint of each landmark in an image.
 using LandmarkKeypoints = std::unordered_map<LandmarkId, uint32_t>;
 
-ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe, const PinholeView& view,
-                      LandmarkKeypoints& landmarks) {
-  ColmapImage made{image.keyframe.value + 1, image.name + ".png", keyframe.cam_from_world, {}};
+ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe,
+                      const ExportCamera& view, LandmarkKeypoints& landmarks) {
+  ColmapImage made{.id = image.keyframe.value + 1,
+                   .name = image.name + ".png",
+                   .cam_from_world = keyframe.cam_from_world};
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const Eigen::Vector2d pixel =
         view.FromUndistorted(keyframe.frame->features.keypoints[i].undistorted.cast<double>());
@@ -32,6 +34,27 @@ ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe, cons
       landmarks[keyframe.landmarks[i]] = static_cast<uint32_t>(made.keypoints.size());
     }
     made.keypoints.push_back({pixel + Eigen::Vector2d::Constant(kHalfPixel)});
+  }
+  return made;
+}
+
+// The right image of a pair. `first` is its id if that of the keyframe is 0.
+ColmapImage MakeRightImage(const KeyframeImage& image, uint32_t first, double baseline,
+                           const Keyframe& keyframe, const PinholeView& view,
+                           LandmarkKeypoints& landmarks) {
+  const Rigid3 right_from_left{Eigen::Quaterniond::Identity(), {-baseline, 0.0, 0.0}};
+  ColmapImage made{.id = first + image.keyframe.value,
+                   .name = image.name + "_right.png",
+                   .camera = kRight,
+                   .cam_from_world = right_from_left * keyframe.cam_from_world};
+  const FrameFeatures& features = keyframe.frame->features;
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    const Eigen::Vector2d pixel = view.FromUndistorted(
+        Eigen::Vector2f(features.right_u[i], features.keypoints[i].undistorted.y()).cast<double>());
+    if (features.depth[i] > 0.0F && keyframe.landmarks[i].IsValid() && view.Contains(pixel)) {
+      landmarks[keyframe.landmarks[i]] = static_cast<uint32_t>(made.keypoints.size());
+      made.keypoints.push_back({pixel + Eigen::Vector2d::Constant(kHalfPixel)});
+    }
   }
   return made;
 }
@@ -75,17 +98,29 @@ void AddPoint(const Eigen::Vector3d& position, const Colour& colour, std::vector
 
 ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
                             std::span<const Colour> colours, std::span<const KeyframeImage> images,
-                            const PinholeView& view) {
-  ColmapModel model{view.camera(), {}, {}};
+                            const ExportCamera& view, double baseline) {
+  const bool are_pairs = baseline > 0.0;
+  ColmapModel model{view.camera(), are_pairs ? kRight : 1, {}, {}};
   model.camera.cx += kHalfPixel;
   model.camera.cy += kHalfPixel;
   std::unordered_map<LandmarkId, std::vector<Place>> places;
-  for (const KeyframeImage& image : images) {
-    LandmarkKeypoints landmarks;
-    model.images.push_back(MakeImage(image, map.keyframes().At(image.keyframe), view, landmarks));
+  const auto add = [&](ColmapImage image, const LandmarkKeypoints& landmarks) {
+    model.images.push_back(std::move(image));
     for (const auto& [landmark, keypoint] : landmarks) {
       places[landmark].push_back({model.images.size() - 1, keypoint});
     }
+  };
+  for (const KeyframeImage& image : images) {
+    LandmarkKeypoints landmarks;
+    ColmapImage made = MakeImage(image, map.keyframes().At(image.keyframe), view, landmarks);
+    add(std::move(made), landmarks);
+  }
+  const uint32_t first_right = images.empty() ? 1 : images.back().keyframe.value + 2;
+  for (const KeyframeImage& image : are_pairs ? images : std::span<const KeyframeImage>()) {
+    LandmarkKeypoints landmarks;
+    ColmapImage made = MakeRightImage(image, first_right, baseline,
+                                      map.keyframes().At(image.keyframe), view, landmarks);
+    add(std::move(made), landmarks);
   }
   for (size_t i = 0; i < located.ids.size(); ++i) {
     const auto seen = places.find(located.ids[i]);
@@ -98,16 +133,18 @@ ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
 
 std::vector<FileContent> FormatColmapText(const ColmapModel& model) {
   const PinholeCamera& camera = model.camera;
-  const std::string cameras = fmt::format(
-      "# CAMERA_ID MODEL WIDTH HEIGHT fx fy cx cy\n{} PINHOLE {} {} {} {} {} {}\n", kCameraId,
-      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+  std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT fx fy cx cy\n";
+  for (uint32_t id = 1; id <= model.cameras; ++id) {
+    cameras += fmt::format("{} PINHOLE {} {} {} {} {} {}\n", id, camera.width, camera.height,
+                           camera.fx, camera.fy, camera.cx, camera.cy);
+  }
   std::string images =
       "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then X Y POINT3D_ID of each keypoint\n";
   for (const ColmapImage& image : model.images) {
     const Eigen::Quaterniond& q = image.cam_from_world.rotation;
     const Eigen::Vector3d& t = image.cam_from_world.translation;
     fmt::format_to(std::back_inserter(images), "{} {} {} {} {} {} {} {} {} {}\n", image.id, q.w(),
-                   q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), kCameraId, image.name);
+                   q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), image.camera, image.name);
     for (const ColmapKeypoint& keypoint : image.keypoints) {
       const bool shows_point = keypoint.point != ColmapKeypoint::kNone;
       fmt::format_to(std::back_inserter(images), "{:.3f} {:.3f} {} ", keypoint.pixel.x(),
@@ -130,16 +167,19 @@ std::vector<FileContent> FormatColmapText(const ColmapModel& model) {
 
 namespace {
 
-std::string CamerasInBinary(const PinholeCamera& camera) {
+std::string CamerasInBinary(const ColmapModel& model) {
   constexpr int32_t kPinhole = 1;
+  const PinholeCamera& camera = model.camera;
   ByteWriter writer;
-  writer.Put(uint64_t{1});
-  writer.Put(kCameraId);
-  writer.Put(kPinhole);
-  writer.Put(static_cast<uint64_t>(camera.width));
-  writer.Put(static_cast<uint64_t>(camera.height));
-  for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) {
-    writer.Put(value);
+  writer.Put(uint64_t{model.cameras});
+  for (uint32_t id = 1; id <= model.cameras; ++id) {
+    writer.Put(id);
+    writer.Put(kPinhole);
+    writer.Put(static_cast<uint64_t>(camera.width));
+    writer.Put(static_cast<uint64_t>(camera.height));
+    for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) {
+      writer.Put(value);
+    }
   }
   return writer.bytes();
 }
@@ -154,7 +194,7 @@ std::string ImagesInBinary(std::span<const ColmapImage> images) {
       writer.Put(value);
     }
     writer.PutMatrix(image.cam_from_world.translation);
-    writer.Put(kCameraId);
+    writer.Put(image.camera);
     for (const char letter : image.name) {
       writer.Put(letter);
     }
@@ -190,7 +230,7 @@ std::string PointsInBinary(std::span<const ColmapPoint> points) {
 }  // namespace
 
 std::vector<FileContent> FormatColmapBinary(const ColmapModel& model) {
-  return {{"cameras.bin", CamerasInBinary(model.camera)},
+  return {{"cameras.bin", CamerasInBinary(model)},
           {"images.bin", ImagesInBinary(model.images)},
           {"points3D.bin", PointsInBinary(model.points)}};
 }

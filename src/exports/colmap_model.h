@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "exports/export_camera.h"
 #include "exports/keyframe_images.h"
-#include "exports/pinhole_view.h"
 #include "hullslam/map/map.h"
 #include "map/located_landmarks.h"
 #include "results/output_folder.h"
@@ -18,7 +18,8 @@
 namespace hullslam {
 
 // A reconstruction as COLMAP has it (https://colmap.github.io/format.html), of one camera without
-// distortion. In COLMAP the centre of the first pixel is (0.5, 0.5); all pixels here are COLMAP's.
+// distortion, or of the two equal ones of a rectified pair. In COLMAP the centre of the first pixel
+// is (0.5, 0.5); all pixels here are COLMAP's.
 
 struct ColmapKeypoint {
   static constexpr uint64_t kNone = std::numeric_limits<uint64_t>::max();
@@ -27,10 +28,11 @@ struct ColmapKeypoint {
 };
 
 struct ColmapImage {
-  uint32_t id = 0;  // 1 + the id of the keyframe
+  uint32_t id = 0;  // 1 + the id of the keyframe; those of right images come after all others
   std::string name;
+  uint32_t camera = 1;  // 2 for the right one of a pair
   Rigid3 cam_from_world;
-  std::vector<ColmapKeypoint> keypoints;
+  std::vector<ColmapKeypoint> keypoints = {};
 };
 
 struct ColmapSighting {
@@ -48,16 +50,18 @@ struct ColmapPoint {
 
 struct ColmapModel {
   PinholeCamera camera;
+  uint32_t cameras = 1;  // 2 for pairs
   std::vector<ColmapImage> images;
   std::vector<ColmapPoint> points;
 };
 
 // The model of the keyframes that have an image (name + ".png"). It has the keypoints inside of the
 // images of `view`, and the landmarks that at least two of them show within 4 px. `colours` has one
-// entry per landmark of `located`.
+// entry per landmark of `located`. With a `baseline` (m), each keyframe also has a right image
+// (name + "_right.png"), with the keypoints whose columns in it are known.
 ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
                             std::span<const Colour> colours, std::span<const KeyframeImage> images,
-                            const PinholeView& view);
+                            const ExportCamera& view, double baseline = 0.0);
 
 // cameras.txt, images.txt and points3D.txt.
 std::vector<FileContent> FormatColmapText(const ColmapModel& model);

@@ -21,15 +21,19 @@ namespace {
 
 std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
   const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
+  const ExportCamera view(input.map->sensor.camera);
   ExportFolder folder(options.output);
   WriteImages(images, view, input, folder);
+  const bool are_pairs = input.map->sensor.kind == SensorKind::kStereo;
+  if (are_pairs) {
+    WriteRightImages(images, view, input, folder);
+  }
   std::vector<Colour> colours;
   for (const ColouredPoint& point : input.model.points) {
     colours.push_back(point.colour);
   }
-  const ColmapModel model =
-      MakeColmapModel(input.map->map, input.map->located, colours, images, view);
+  const ColmapModel model = MakeColmapModel(input.map->map, input.map->located, colours, images,
+                                            view, are_pairs ? input.map->sensor.baseline() : 0.0);
   for (FileContent& file : options.as_text ? FormatColmapText(model) : FormatColmapBinary(model)) {
     file.name = "sparse/0/" + file.name;
     folder.Write(file);
@@ -42,7 +46,7 @@ std::string WriteColmap(const ExportOptions& options, ExportInput& input) {
 std::string WriteNerfstudio(const ExportOptions& options, ExportInput& input) {
   constexpr const char* kPointsFile = "points.ply";
   const std::vector<KeyframeImage> images = FindImages(input);
-  const PinholeView view(input.map->sensor.camera);
+  const ExportCamera view(input.map->sensor.camera);
   ExportFolder folder(options.output);
   WriteImages(images, view, input, folder);
   const std::vector<NerfstudioFrame> frames =

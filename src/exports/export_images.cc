@@ -42,10 +42,10 @@ std::optional<double> FindDepthUnits(const std::vector<KeyframeImage>& images,
   return std::nullopt;
 }
 
-void WriteDepths(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteDepths(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder, std::vector<NerfstudioFrame>& frames) {
   const auto has_depth = [](const KeyframeImage& image) { return !image.frame.depth.empty(); };
-  if (input.map->sensor.IsMonocular()) {
+  if (input.map->sensor.kind != SensorKind::kRgbd) {
     return;
   }
   const std::optional<double> units = std::all_of(images.begin(), images.end(), has_depth)
@@ -80,7 +80,7 @@ std::vector<cv::Mat> LoadMasks(const std::vector<KeyframeImage>& images,
   return masks;
 }
 
-void WriteMasks(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteMasks(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                 const std::set<std::string>& classes, const ExportInput& input,
                 ExportFolder& folder, std::vector<NerfstudioFrame>& frames) {
   if (!input.masks || classes.empty()) {
@@ -140,7 +140,7 @@ void ColourPoints(ExportInput& input) {
   UseColours(colours, input.model);
 }
 
-void WriteImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                  ExportInput& input, ExportFolder& folder) {
   PointColours colours(input.map->map, input.map->located.ids);
   const PinholeCamera& camera = input.map->sensor.camera;
@@ -153,8 +153,17 @@ void WriteImages(const std::vector<KeyframeImage>& images, const PinholeView& vi
   UseColours(colours, input.model);
 }
 
+void WriteRightImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+                      const ExportInput& input, ExportFolder& folder) {
+  for (const KeyframeImage& image : images) {
+    const ImageInput pair = input.sequence->load(image.frame, input.map->sensor.camera);
+    folder.Write({"images/" + image.name + "_right.png",
+                  EncodeImage(view.Undistort(pair.right, cv::INTER_CUBIC), ".png")});
+  }
+}
+
 std::vector<NerfstudioFrame> WriteDepthsAndMasks(const std::vector<KeyframeImage>& images,
-                                                 const PinholeView& view,
+                                                 const ExportCamera& view,
                                                  const std::set<std::string>& masked_classes,
                                                  ExportInput& input, ExportFolder& folder) {
   std::vector<NerfstudioFrame> frames;

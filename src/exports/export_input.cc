@@ -92,7 +92,7 @@ void UsePointsOfRun(const FinishedRun& run, ExportModel& model) {
 
 void UseSceneOfRun(const FinishedRun& run, ExportModel& model) {
   model.scene = run.ReadSceneGraph().value_or(Scene());
-  if (const std::optional<ObjectReport> objects = run.ReadObjectReport()) {
+  if (const std::optional<ObjectResults> objects = run.ReadObjectResults()) {
     model.camera = objects->camera;
   }
 }
@@ -128,10 +128,12 @@ ExportInput ReadRun(const ExportSource& source, ExportNeed need) {
   ExportInput input;
   input.read = {source.input};
   const FinishedRun run = OpenFinishedRun(source.input);
-  input.model.trajectory = run.Has("trajectory.txt") ? run.ReadPoses() : run.ReadKeyframePoses();
+  const bool has_poses = run.Has("trajectory.txt");
   if (need == ExportNeed::kPoses) {
+    input.model.trajectory = has_poses ? run.ReadPosesAsRead() : run.ReadKeyframePoses();
     return input;
   }
+  input.model.trajectory = has_poses ? run.ReadPoses() : run.ReadKeyframePoses();
   UseSceneOfRun(run, input.model);
   UseMapOfRun(source, run, need >= ExportNeed::kMap, input);
   if (!input.map) {

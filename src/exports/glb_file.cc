@@ -214,7 +214,7 @@ void AddObjects(const Scene& scene, ObjectShape shape, Gltf& gltf) {
                {"class", object.label},
                {"class_distribution", Json(object.shares)},
                {"half_extents", ToJson(placed.half_extents)},
-               {"times_seen", object.views},
+               {"times_seen", object.observations},
                {"quality", object.quality}}}},
             gltf);
   }

@@ -42,9 +42,9 @@ void PutPose(const Rigid3& pose, CdrWriter& message) {
   }
 }
 
-std::vector<const ReportedObject*> MappedObjects(std::span<const ReportedObject> objects) {
-  std::vector<const ReportedObject*> mapped;
-  for (const ReportedObject& object : objects) {
+std::vector<const ObjectResult*> MappedObjects(std::span<const ObjectResult> objects) {
+  std::vector<const ObjectResult*> mapped;
+  for (const ObjectResult& object : objects) {
     if (object.state == ObjectState::kMapped) {
       mapped.push_back(&object);
     }
@@ -52,7 +52,7 @@ std::vector<const ReportedObject*> MappedObjects(std::span<const ReportedObject>
   return mapped;
 }
 
-std::string NameOf(const ReportedObject& object) {
+std::string NameOf(const ObjectResult& object) {
   return fmt::format("{} {}", object.label, object.id.value);
 }
 
@@ -66,7 +66,7 @@ void PutColour(const Colour& colour, double alpha, CdrWriter& message) {
   message.Put(alpha);
 }
 
-void PutEntity(RosTime time, const ReportedObject& object, CdrWriter& message) {
+void PutEntity(RosTime time, const ObjectResult& object, CdrWriter& message) {
   constexpr double kFontPixels = 14.0;
   const Rigid3& pose = object.ellipsoid.world_from_object;
   PutHeader(time, kMapFrame, message);  // the time and the frame
@@ -211,12 +211,12 @@ std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positio
   return message.Message();
 }
 
-std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> objects) {
-  const std::vector<const ReportedObject*> mapped = MappedObjects(objects);
+std::string DetectionsMessage(RosTime time, std::span<const ObjectResult> objects) {
+  const std::vector<const ObjectResult*> mapped = MappedObjects(objects);
   CdrWriter message;
   PutHeader(time, kMapFrame, message);
   message.PutCount(mapped.size());
-  for (const ReportedObject* const object : mapped) {
+  for (const ObjectResult* const object : mapped) {
     double votes = 0.0;
     for (const auto& [label, of_label] : object->votes) {
       votes += of_label;
@@ -239,12 +239,12 @@ std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> obje
   return message.Message();
 }
 
-std::string SceneMessage(RosTime time, std::span<const ReportedObject> objects) {
-  const std::vector<const ReportedObject*> mapped = MappedObjects(objects);
+std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects) {
+  const std::vector<const ObjectResult*> mapped = MappedObjects(objects);
   CdrWriter message;
   message.PutCount(0);  // deletions
   message.PutCount(mapped.size());
-  for (const ReportedObject* const object : mapped) {
+  for (const ObjectResult* const object : mapped) {
     PutEntity(time, *object, message);
   }
   return message.Message();

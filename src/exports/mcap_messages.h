@@ -9,7 +9,7 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/trajectory.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/unit_mesh.h"
 
 namespace hullslam {
@@ -40,9 +40,9 @@ std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positio
                           std::span<const Colour> colours);
 // vision_msgs/msg/Detection3DArray: the mapped objects with their oriented boxes and the share of
 // the votes of each class.
-std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> objects);
+std::string DetectionsMessage(RosTime time, std::span<const ObjectResult> objects);
 // foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids in the colours of their classes
 // (ColourOfClass()), with their class names.
-std::string SceneMessage(RosTime time, std::span<const ReportedObject> objects);
+std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects);
 
 }  // namespace hullslam

@@ -36,7 +36,7 @@ class RunRecorder {
   size_t Write() {
     // Messages about the whole run come first, so that players show them from the beginning.
     const RosTime start = ToRosTime(run_.sequence->frames.front().timestamp);
-    const std::vector<ReportedObject>& objects = run_.objects->objects;
+    const std::vector<ObjectResult>& objects = run_.objects->objects;
     WriteOnce("/map/path", "nav_msgs/msg/Path", start, PathMessage(start, *run_.trajectory));
     WriteOnce("/map/points", "sensor_msgs/msg/PointCloud2", start, Points(start));
     WriteOnce("/map/objects", "vision_msgs/msg/Detection3DArray", start,

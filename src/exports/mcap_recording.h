@@ -9,7 +9,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 
 namespace hullslam {
 
@@ -21,7 +21,7 @@ struct RecordedRun {
   const ImageSequence* sequence = nullptr;
   size_t frames = 0;  // the first frames of the sequence, which the run was given
   const Trajectory* trajectory = nullptr;
-  const ObjectReport* objects = nullptr;
+  const ObjectResults* objects = nullptr;
 };
 
 // Writes the run as an MCAP file with messages of ROS 2 (docs/bags.md), in the order of their

@@ -79,7 +79,7 @@ std::optional<double> MeasureDepthUnits(const FrameFeatures& features, const Pin
   return ratios.size() < kLeast ? std::nullopt : std::optional(Median(ratios));
 }
 
-cv::Mat MakeDepthImage(const cv::Mat& depth, double units_per_metre, const PinholeView& view) {
+cv::Mat MakeDepthImage(const cv::Mat& depth, double units_per_metre, const ExportCamera& view) {
   const bool is_metres = depth.type() == CV_32FC1;
   const double scale = 1.0 / (kNerfstudioDepthUnit * (is_metres ? 1.0 : units_per_metre));
   const cv::Mat raw = view.Undistort(depth, cv::INTER_NEAREST);

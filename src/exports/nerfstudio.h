@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "exports/pinhole_view.h"
+#include "exports/export_camera.h"
 #include "hullslam/features/frame_features.h"
 #include "hullslam/geometry/rigid3.h"
 
@@ -38,6 +38,6 @@ std::optional<double> MeasureDepthUnits(const FrameFeatures& features, const Pin
 // The raw depth image (as in ImageInput) for the pixels of `view`: CV_16UC1 in units of
 // kNerfstudioDepthUnit, 0 where the depth is unknown or above 65.535 m. `units_per_metre` is
 // ignored for images in metres (CV_32FC1).
-cv::Mat MakeDepthImage(const cv::Mat& depth, double units_per_metre, const PinholeView& view);
+cv::Mat MakeDepthImage(const cv::Mat& depth, double units_per_metre, const ExportCamera& view);
 
 }  // namespace hullslam

@@ -28,17 +28,17 @@ struct Candidate {
   Outline outline;
   MaskRegion region;
   Detection detection;
-  MaskView view;
+  MaskCamera view;
   double depth = 0.0;  // m, median of its points; 0 if unknown
 };
 
 struct FrameView {
   const DetectionOptions& options;
-  DepthView depth;
+  MaskDepth depth;
   std::span<const RawKeypoint> keypoints;
 
   // The same frame in the view of a mask.
-  FrameView From(const MaskView& view) const {
+  FrameView From(const MaskCamera& view) const {
     return {
         .options = options,
         .depth = {.camera = view, .image = depth.image, .units_per_metre = depth.units_per_metre},
@@ -127,7 +127,7 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
   }
   std::vector<Polygon2> parts = LargeParts(mask.outlines, whole.options.min_part_share);
   const PinholeCamera& camera = whole.depth.camera.camera();
-  const FrameView frame = whole.From(MaskView(camera, parts));
+  const FrameView frame = whole.From(MaskCamera(camera, parts));
   Outline outline = UndistortOutline(parts, frame.depth.camera);
   if (const auto rejection = CheckOutline(outline, frame)) {
     return rejection;

@@ -35,7 +35,7 @@ struct Border {
 // Depth at a distance (px) beyond the line, m; 0 if it is unknown. If the image has no depth there
 // but another mask contains the point, returns the first known depth of that mask farther out. This
 // is the depth of the other object along this border, not at its centre.
-double DepthBeyond(const Border& border, double distance, const DepthView& view,
+double DepthBeyond(const Border& border, double distance, const MaskDepth& view,
                    std::span<const MaskRegion* const> others) {
   const auto raw_at = [&](double beyond) {
     return view.camera.Distort(border.point + beyond * border.outwards);
@@ -73,7 +73,7 @@ bool BeginsNearer(double own, double near, double far, double step) {
   return near + std::max(0.0, slope) * (kBeyond[0] + kInside) < own - step;
 }
 
-Beyond Look(const Border& border, const DepthView& view, double object_depth,
+Beyond Look(const Border& border, const MaskDepth& view, double object_depth,
             std::span<const MaskRegion* const> others, const DetectionOptions& options) {
   const double inside = view.AtRaw(view.camera.Distort(border.point - kInside * border.outwards));
   const double own = inside > 0.0 ? inside : object_depth;
@@ -88,11 +88,11 @@ Beyond Look(const Border& border, const DepthView& view, double object_depth,
 
 }  // namespace
 
-double DepthView::AtRaw(const Eigen::Vector2d& raw) const {
+double MaskDepth::AtRaw(const Eigen::Vector2d& raw) const {
   return SampleDepth(image, raw.cast<float>(), units_per_metre);
 }
 
-std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
+std::vector<Eigen::Vector3d> DepthPoints(const MaskDepth& view, const MaskRegion& region,
                                          int max_points) {
   std::vector<Eigen::Vector3d> points;
   const cv::Rect& box = region.box();
@@ -128,7 +128,7 @@ double MedianDepth(std::span<const Eigen::Vector3d> points) {
   return Median(std::move(depths));
 }
 
-void RemoveFarFromMedian(const MaskView& camera, double side, double max_offset,
+void RemoveFarFromMedian(const MaskCamera& camera, double side, double max_offset,
                          std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) {
     return;
@@ -143,7 +143,7 @@ void RemoveFarFromMedian(const MaskView& camera, double side, double max_offset,
       points, [&](const auto& point) { return std::abs(camera.DepthOf(point) - median) > limit; });
 }
 
-bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
+bool IsHidden(const LineOnOutline& line, const MaskDepth& view, double object_depth,
               std::span<const MaskRegion* const> others, const DetectionOptions& options) {
   int known = 0;
   int hidden = 0;

@@ -175,7 +175,7 @@ std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
   return {};
 }
 
-std::vector<LineOnOutline> SidesOfBox(const Polygon2& raw_corners, const MaskView& camera) {
+std::vector<LineOnOutline> SidesOfBox(const Polygon2& raw_corners, const MaskCamera& camera) {
   std::vector<LineOnOutline> sides;
   const size_t count = raw_corners.size();
   const bool is_positive = SignedArea(raw_corners) > 0.0;

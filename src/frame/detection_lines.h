@@ -30,6 +30,6 @@ std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
                                           const DetectionOptions& options);
 
 // The four sides of a raw box, each as the line through its undistorted quarter points.
-std::vector<LineOnOutline> SidesOfBox(const Polygon2& raw_corners, const MaskView& camera);
+std::vector<LineOnOutline> SidesOfBox(const Polygon2& raw_corners, const MaskCamera& camera);
 
 }  // namespace hullslam

@@ -11,8 +11,6 @@ void DetectionOptions::Bind(const OptionScope& scope) {
   scope.Add("uniform_directions", &uniform_directions, Range::Between(0, 64),
             "number of evenly spread directions of support lines, in addition to those of the "
             "edges of the hull");
-  scope.Add("min_line_px", &min_line_px, Range::Between(0.0, 1000.0),
-            "shorter edges give no line, px");
   scope.Add("border_px", &border_px, Range::Between(0.0, 1000.0),
             "a line that touches its mask only within this distance of the border of the image is "
             "one-sided, px");
@@ -30,8 +28,6 @@ void DetectionOptions::Bind(const OptionScope& scope) {
   scope.Add("duplicate_class_iou", &duplicate_class_iou, Range::Between(0.1, 1.0),
             "two outlines of one class with at least this IoU are the same object, if the depth of "
             "either is not known");
-  scope.Add("max_depth_points", &max_depth_points, Range::Between(1, 10000),
-            "approximate largest number of depth points per mask");
   scope.Add("max_depth_offset", &max_depth_offset, Range::Between(0.0, 1000.0),
             "depth points farther than this from the median depth of their mask are left out, as a "
             "share of the larger side of the mask at that depth");

@@ -25,7 +25,7 @@ double Perimeter(const Polygon2& outline) {
 // The undistorted outline, with positive signed area. Points are added on long edges, because an
 // edge that is straight in the raw image is curved in the undistorted image. The number of added
 // points is bounded, however long the edges are.
-Polygon2 UndistortDensely(const Polygon2& outline, const MaskView& camera) {
+Polygon2 UndistortDensely(const Polygon2& outline, const MaskCamera& camera) {
   const double largest_step = std::max(kLargestStep, Perimeter(outline) / kMostAddedPoints);
   Polygon2 contour;
   contour.reserve(2 * outline.size());
@@ -63,7 +63,7 @@ std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_
   return parts;
 }
 
-Outline UndistortOutline(std::span<const Polygon2> parts, const MaskView& camera) {
+Outline UndistortOutline(std::span<const Polygon2> parts, const MaskCamera& camera) {
   Outline outline;
   for (const Polygon2& part : parts) {
     Polygon2 contour = UndistortDensely(part, camera);

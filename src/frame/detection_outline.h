@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "frame/mask_view.h"
+#include "frame/mask_camera.h"
 
 namespace hullslam {
 
@@ -22,6 +22,6 @@ struct Outline {
 // pixels. Parts without area are left out.
 std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share);
 
-Outline UndistortOutline(std::span<const Polygon2> parts, const MaskView& camera);
+Outline UndistortOutline(std::span<const Polygon2> parts, const MaskCamera& camera);
 
 }  // namespace hullslam

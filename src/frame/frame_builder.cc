@@ -54,8 +54,10 @@ void CheckImages(const ImageInput& image, const Sensor& sensor) {
     if (image.right.type() != CV_8UC1) {
       throw InputError("the right image is not CV_8UC1");
     }
-  } else if (!image.right.empty()) {
-    throw InputError("there is a right image, expected none without a stereo camera");
+  } else if (!image.right.empty() || !image.right_masks.empty()) {
+    throw InputError(
+        fmt::format("there {}, expected none without a stereo camera",
+                    image.right.empty() ? "are masks of a right image" : "is a right image"));
   }
 }
 
@@ -142,11 +144,8 @@ cv::Mat UnusedPixels(const PinholeCamera& camera) {
   return unused;
 }
 
-// A pixel of a fisheye image is a large angle, so rounding to whole pixels would cost precision.
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
   features.keep_edges = features.keep_edges || !sensor.IsMonocular();
-  features.subpixel =
-      features.subpixel || sensor.kind == SensorKind::kStereo || sensor.camera.IsFisheye();
   return features;
 }
 
@@ -218,6 +217,9 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
     built.awaiting = std::make_shared<const DetectionInput>(std::move(input));
   } else {
     AddDetections(image.masks, input, runner, built);
+  }
+  if (detector_ && !is_awaiting) {
+    detector_->AddRightLines(image.right_masks, runner, built);
   }
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();

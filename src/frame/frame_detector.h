@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "frame/detection_builder.h"
 #include "hullslam/camera/depth.h"
@@ -24,9 +25,16 @@ class FrameDetector {
   // are as in DetectionBuilder.
   void AddDetections(std::span<const InstanceMask> masks, const cv::Mat& depth,
                      std::span<const RawKeypoint> keypoints, TaskRunner& runner, BuiltFrame& built);
+  // Adds the lines of masks of the right image to the detections that show the same objects, and
+  // counts the masks that belong to none. To be called after AddDetections().
+  void AddRightLines(std::span<const InstanceMask> masks, TaskRunner& runner, BuiltFrame& built);
 
  private:
+  std::vector<InstanceMask> OfObjects(std::span<const InstanceMask> masks) const;
+
+  PinholeCamera camera_;
   DetectionBuilder builder_;
+  DetectionBuilder right_builder_;  // of the right image, whose keypoints are not kept
   std::set<std::string> dynamic_classes_;
 };
 

@@ -62,6 +62,9 @@ void Transform(const AffineMap& map, Detection& detection) {
   for (SilhouetteLine& line : detection.lines) {
     line.line = Transform(map, line.line);
   }
+  for (SilhouetteLine& line : detection.right_lines) {
+    line.line = Transform(map, line.line);
+  }
   if (detection.ellipse) {
     Ellipse& ellipse = *detection.ellipse;
     ellipse.center = map * ellipse.center;

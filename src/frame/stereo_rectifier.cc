@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
@@ -42,8 +43,21 @@ bool IsRectified(const StereoCalibration& pair) {
          pair.right_from_left.rotation.angularDistance(Eigen::Quaterniond::Identity()) < kAngle;
 }
 
+void CheckCamera(const PinholeCamera& camera, const std::string& name, const std::string& origin) {
+  constexpr int64_t kMostPixels = 64'000'000;  // the maps of an image take 8 bytes per pixel
+  if (const int64_t pixels = int64_t{camera.width} * camera.height; pixels > kMostPixels) {
+    throw InputError(fmt::format("{}: the {} camera has images of {}x{} px, expected at most {} px",
+                                 origin, name, camera.width, camera.height, kMostPixels));
+  }
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    throw InputError(fmt::format("{}: the {} camera: {}", origin, name, fault));
+  }
+}
+
 void CheckPair(const StereoCalibration& pair, const std::string& origin) {
   constexpr double kLeastBaseline = 1e-4;  // m
+  CheckCamera(pair.left, "left", origin);
+  CheckCamera(pair.right, "right", origin);
   if (pair.left.width != pair.right.width || pair.left.height != pair.right.height) {
     throw InputError(fmt::format(
         "{}: the left camera has images of {}x{} px and the right one of {}x{} px, expected equal "
@@ -73,7 +87,7 @@ void CheckPair(const StereoCalibration& pair, const std::string& origin) {
 }  // namespace
 
 StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std::string& origin)
-    : read_(calibration.left), camera_(calibration.left) {
+    : left_{calibration.left}, right_{calibration.right}, camera_(calibration.left) {
   CheckPair(calibration, origin);
   if (IsRectified(calibration)) {
     camera_.bf = -calibration.right_from_left.translation.x() * camera_.fx;
@@ -82,7 +96,7 @@ StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std
   cv::Mat rotation;
   cv::eigen2cv(calibration.right_from_left.rotation.toRotationMatrix(), rotation);
   const Eigen::Vector3d& t = calibration.right_from_left.translation;
-  const cv::Size size(read_.width, read_.height);
+  const cv::Size size(left_.read.width, left_.read.height);
   cv::Matx33d left_rotation;
   cv::Matx33d right_rotation;
   cv::Matx34d left_projection;
@@ -97,16 +111,20 @@ StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std
              .fy = left_projection(1, 1),
              .cx = left_projection(0, 2),
              .cy = left_projection(1, 2),
-             .width = read_.width,
-             .height = read_.height,
+             .width = left_.read.width,
+             .height = left_.read.height,
              .bf = -right_projection(0, 3)};
   Eigen::Matrix3d left;
   Eigen::Matrix3d right;
   cv::cv2eigen(left_rotation, left);
   cv::cv2eigen(right_rotation, right);
-  rectified_from_left_.rotation = Eigen::Quaterniond(left).normalized();
-  left_maps_ = MakeMaps(calibration.left, left, camera_);
-  right_maps_ = MakeMaps(calibration.right, right, camera_);
+  Turn(left, left_);
+  Turn(right, right_);
+}
+
+void StereoRectifier::Turn(const Eigen::Matrix3d& rotation, Eye& eye) const {
+  eye.rectified_from_read.rotation = Eigen::Quaterniond(rotation).normalized();
+  eye.maps = MakeMaps(eye.read, rotation, camera_);
 }
 
 StereoRectifier::Maps StereoRectifier::MakeMaps(const PinholeCamera& read,
@@ -134,14 +152,14 @@ cv::Mat StereoRectifier::Remap(const cv::Mat& image, const Maps& maps) {
   return rectified;
 }
 
-void StereoRectifier::Rectify(InstanceMask& mask) const {
-  if (left_maps_.columns.empty()) {
+void StereoRectifier::Rectify(const Eye& eye, InstanceMask& mask) const {
+  if (eye.maps.columns.empty()) {
     return;
   }
   for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
     for (Eigen::Vector2d& point : outline) {
       const Eigen::Vector3d ray =
-          rectified_from_left_.rotation * read_.Unproject(read_.Undistort(point), 1.0);
+          eye.rectified_from_read.rotation * eye.read.Unproject(eye.read.Undistort(point), 1.0);
       point = camera_.Project(ray);
     }
   }

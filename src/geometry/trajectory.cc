@@ -32,4 +32,11 @@ std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double times
                 (1.0 - share) * a.translation + share * b.translation);
 }
 
+Trajectory OfOtherCamera(Trajectory trajectory, const Rigid3& cam_from_other) {
+  for (StampedPose& pose : trajectory) {
+    pose.world_from_cam = pose.world_from_cam * cam_from_other;
+  }
+  return trajectory;
+}
+
 }  // namespace hullslam

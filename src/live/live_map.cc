@@ -49,8 +49,8 @@ void WritePose(const Rigid3& pose, float* row) {
 }
 
 // Only the poses of the views are needed after the object was measured.
-void DropOutlines(ReportedObject& object) {
-  for (ReportedView& view : object.views) {
+void DropOutlines(ObjectResult& object) {
+  for (ObservationResult& view : object.observations) {
     view.label = {};
     view.hull = {};
     view.contour = {};
@@ -78,8 +78,8 @@ float ToleranceOf(const Map& map, const std::vector<const Landmark*>& landmarks)
   return static_cast<float>(kPart * distances[distances.size() / 2]);
 }
 
-bool IsSame(const ReportedObject& old, const ObjectLandmark& object) {
-  return old.state == object.state && old.views.size() == object.observations.size() &&
+bool IsSame(const ObjectResult& old, const ObjectLandmark& object) {
+  return old.state == object.state && old.observations.size() == object.observations.size() &&
          old.votes == object.votes && old.ellipsoid.half_axes == object.ellipsoid.half_axes &&
          old.ellipsoid.world_from_object.translation ==
              object.ellipsoid.world_from_object.translation;
@@ -197,8 +197,8 @@ void LiveMap::FollowObjects(const Map& map, IslandId island, bool is_limited,
       next_object_ = id;
       return;
     }
-    ReportedObject report = ReportObject(map, id, *object);
-    report.fit = MeasureObject(report.ellipsoid, report.views, sensor_.camera);
+    ObjectResult report = ResultOfObject(map, id, *object);
+    report.fit = MeasureObject(report.ellipsoid, report.observations, sensor_.camera);
     DropOutlines(report);
     objects_[id] = std::move(report);
     change.objects.push_back(id);

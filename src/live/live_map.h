@@ -51,7 +51,7 @@ class LiveMap {
 
   const RowTable& landmarks() const { return landmarks_; }
   const RowTable& keyframes() const { return keyframes_; }
-  const std::map<ObjectId, ReportedObject>& objects() const { return objects_; }
+  const std::map<ObjectId, ObjectResult>& objects() const { return objects_; }
   const ViewEdges& edges() const { return edges_; }
   size_t landmark_total() const { return landmark_total_; }
   // Whether landmarks or objects are left out because there are too many.
@@ -69,7 +69,7 @@ class LiveMap {
   const LiveMapLimits limits_;
   RowTable landmarks_{kLandmarkWidth, 3};
   RowTable keyframes_{kKeyframeWidth, kKeyframeWidth};
-  std::map<ObjectId, ReportedObject> objects_;
+  std::map<ObjectId, ObjectResult> objects_;
   KeyframeId oldest_view_{0};  // objects that were only seen before are left out
   bool are_objects_left_out_ = false;
   ObjectId next_object_{0};  // at which the next measuring begins

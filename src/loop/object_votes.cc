@@ -82,7 +82,7 @@ Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
   }
   const bool is_missing =
       is_location_taken ||
-      (ViewLocation(map, sensor, other_end, object, options) == LocationView::kVisible &&
+      (FindVisibility(map, sensor, other_end, object, options) == LocationVisibility::kVisible &&
        !IsDetected(map, sensor, object, other_end, options.association));
   return is_missing ? Vote::kDisagree : Vote::kNone;
 }

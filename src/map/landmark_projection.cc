@@ -9,9 +9,10 @@ constexpr double kDistanceMargin = 1.2;  // at both ends of the range; one level
 
 }  // namespace
 
-std::optional<LandmarkView> ViewLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
-                                         const Landmark& landmark) {
-  LandmarkView view;
+std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
+                                                  const Rigid3& cam_from_world,
+                                                  const Landmark& landmark) {
+  LandmarkProjection view;
   view.point_in_cam = cam_from_world * landmark.position;
   if (view.point_in_cam.z() <= 0.0) {
     return std::nullopt;

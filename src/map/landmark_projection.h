@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // The expected view of a landmark by a camera.
-struct LandmarkView {
+struct LandmarkProjection {
   Eigen::Vector3d point_in_cam = Eigen::Vector3d::Zero();  // m
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();         // px, undistorted
   Eigen::Vector2d grid_pixel = Eigen::Vector2d::Zero();    // px (Sensor::ToGrid)
@@ -23,7 +23,8 @@ struct LandmarkView {
 // Null if the camera cannot recognise the landmark: it is behind the camera or outside the image,
 // it is much nearer or farther than it was observed, or the camera sees it from a direction more
 // than 60 degrees away from its viewing direction.
-std::optional<LandmarkView> ViewLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
-                                         const Landmark& landmark);
+std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
+                                                  const Rigid3& cam_from_world,
+                                                  const Landmark& landmark);
 
 }  // namespace hullslam

@@ -11,6 +11,10 @@ constexpr double kMostDouble =
     std::numeric_limits<double>::max();  // an empty box has corners of this size
 constexpr auto kMostFloat = static_cast<float>(kMostMapNumber);
 
+// Bits of one byte, which says whether lines of the right image follow.
+constexpr uint8_t kIsBox = 1;
+constexpr uint8_t kHasRightLines = 2;
+
 template <int N>
 void WritePoints(const PackedPoints<N>& points, ByteWriter& out) {
   out.PutMatrix(points.min());
@@ -80,7 +84,11 @@ void WriteDetection(const Detection& detection, ByteWriter& out) {
     out.Put(element);
   }
   out.PutFlag(detection.is_cut);
-  out.PutFlag(detection.is_box);
+  const bool has_right = !detection.right_lines.empty();
+  out.Put(static_cast<uint8_t>((detection.is_box ? kIsBox : 0) | (has_right ? kHasRightLines : 0)));
+  if (has_right) {
+    WriteLines(detection.right_lines, out);
+  }
   WritePoints(detection.points, out);
   out.PutCount(detection.keypoints.size());
   for (const uint32_t keypoint : detection.keypoints) {
@@ -113,7 +121,12 @@ Detection ReadDetection(size_t keypoints, ByteReader& in) {
     element = in.GetFinite(1.0F);
   }
   detection.is_cut = in.GetFlag();
-  detection.is_box = in.GetFlag();
+  const auto flags = in.Get<uint8_t>();
+  in.Require(flags <= (kIsBox | kHasRightLines), "has an unknown flag of a detection");
+  detection.is_box = (flags & kIsBox) != 0;
+  if ((flags & kHasRightLines) != 0) {
+    detection.right_lines = ReadLines(in);
+  }
   detection.points = ReadPoints<3>(in);
   detection.keypoints.resize(in.GetCount(sizeof(uint32_t)));
   for (uint32_t& keypoint : detection.keypoints) {

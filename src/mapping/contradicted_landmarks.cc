@@ -29,7 +29,7 @@ enum class Sight {
 
 // The depth z (m) of a sample compared with that of a point, in standard deviations; positive if
 // the sample is behind the point.
-double SigmasBehind(const Sensor& sensor, const LandmarkView& view, double z) {
+double SigmasBehind(const Sensor& sensor, const LandmarkProjection& view, double z) {
   const auto sample =
       PointMeasurement::Create(view.pixel, 1.0, sensor.camera.bf / z, sensor.depth_error);
   return PointResidual(sensor.camera, sample, view.point_in_cam).z();
@@ -37,7 +37,8 @@ double SigmasBehind(const Sensor& sensor, const LandmarkView& view, double z) {
 
 Sight LookAt(const Sensor& sensor, const Keyframe& keyframe, const Landmark& landmark) {
   const DepthGrid& grid = keyframe.frame->depth;
-  const std::optional<LandmarkView> view = ViewLandmark(sensor, keyframe.cam_from_world, landmark);
+  const std::optional<LandmarkProjection> view =
+      ProjectLandmark(sensor, keyframe.cam_from_world, landmark);
   if (!view || grid.empty()) {
     return Sight::kUnclear;
   }

@@ -11,8 +11,8 @@
 
 #include "map/islands.h"
 #include "mapping/sensor_rules.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "objects/resolved_observation.h"
 #include "util/id_set.h"
 
 namespace hullslam {
@@ -141,7 +141,7 @@ bool JoinsItsNeighbours(const Map& map, KeyframeId id, int min_shared) {
 // The centre of the object. Null for a candidate without shape and depth, whose location is not
 // known.
 std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
-                                        std::span<const ObjectView> views) {
+                                        std::span<const ResolvedObservation> views) {
   if (object.has_shape) {
     return object.ellipsoid.world_from_object.translation;
   }
@@ -151,13 +151,13 @@ std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
 
 // Whether no other keyframe sees the object from a similar direction.
 bool IsNewDirection(const Map& map, KeyframeId id, const ObjectLandmark& object) {
-  const std::vector<ObjectView> views = CollectViews(map, object);
+  const std::vector<ResolvedObservation> views = ResolveObservations(map, object);
   const std::optional<Eigen::Vector3d> center = CenterOf(object, views);
   if (!center) {
     return false;
   }
   const Eigen::Vector3d ray = RayTo(map.CamFromWorld(id), *center);
-  return std::none_of(views.begin(), views.end(), [&](const ObjectView& view) {
+  return std::none_of(views.begin(), views.end(), [&](const ResolvedObservation& view) {
     return view.keyframe != id && RayTo(view.cam_from_world, *center).dot(ray) >= kMaxSimilarCos;
   });
 }

@@ -24,7 +24,7 @@ constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, if both depths
 constexpr double kMinParallaxSigmas = 2.0;
 
 // A keypoint of a keyframe with the data that triangulation needs.
-struct View {
+struct SeenPoint {
   const Keyframe* keyframe = nullptr;
   uint32_t keypoint = 0;
   Eigen::Vector2d pixel;
@@ -35,39 +35,40 @@ struct View {
   PointMeasurement measurement;
 };
 
-View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor) {
+SeenPoint MakeSeenPoint(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor) {
   const FrameFeatures& features = keyframe.frame->features;
-  View view;
-  view.keyframe = &keyframe;
-  view.keypoint = keypoint;
-  view.pixel = features.keypoints[keypoint].undistorted.cast<double>();
-  const Eigen::Vector3d ray = sensor.camera.Unproject(view.pixel, 1.0);
-  view.normalized = ray.head<2>();
-  view.ray_in_world = keyframe.cam_from_world.rotation.conjugate() * ray.normalized();
-  view.depth = static_cast<double>(features.depth[keypoint]);
-  view.scale = static_cast<double>(
+  SeenPoint seen;
+  seen.keyframe = &keyframe;
+  seen.keypoint = keypoint;
+  seen.pixel = features.keypoints[keypoint].undistorted.cast<double>();
+  const Eigen::Vector3d ray = sensor.camera.Unproject(seen.pixel, 1.0);
+  seen.normalized = ray.head<2>();
+  seen.ray_in_world = keyframe.cam_from_world.rotation.conjugate() * ray.normalized();
+  seen.depth = static_cast<double>(features.depth[keypoint]);
+  seen.scale = static_cast<double>(
       sensor.levels.scale[static_cast<size_t>(features.keypoints[keypoint].level)]);
-  view.measurement = MeasurePoint(sensor, features, keypoint, sensor.depth_error);
-  return view;
+  seen.measurement = MeasurePoint(sensor, features, keypoint, sensor.depth_error);
+  return seen;
 }
 
 // Cosine of the parallax of the virtual stereo pair. 2, larger than any cosine, without depth.
-double CosStereoParallax(const View& view, double baseline) {
-  return view.depth > 0.0 ? std::cos(2.0 * std::atan2(0.5 * baseline, view.depth)) : 2.0;
+double CosStereoParallax(const SeenPoint& seen, double baseline) {
+  return seen.depth > 0.0 ? std::cos(2.0 * std::atan2(0.5 * baseline, seen.depth)) : 2.0;
 }
 
-Eigen::Vector3d UnprojectToWorld(const View& view, const Sensor& sensor) {
-  return Inverse(view.keyframe->cam_from_world) * sensor.camera.Unproject(view.pixel, view.depth);
+Eigen::Vector3d UnprojectToWorld(const SeenPoint& seen, const Sensor& sensor) {
+  return Inverse(seen.keyframe->cam_from_world) * sensor.camera.Unproject(seen.pixel, seen.depth);
 }
 
-std::optional<Eigen::Vector3d> Triangulate(const View& a, const View& b) {
+std::optional<Eigen::Vector3d> Triangulate(const SeenPoint& a, const SeenPoint& b) {
   return TriangulatePoint(a.keyframe->cam_from_world, a.normalized, b.keyframe->cam_from_world,
                           b.normalized);
 }
 
 // The position of the point that both views show; null if the views do not determine it. For
 // sensors with depth.
-std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor& sensor) {
+std::optional<Eigen::Vector3d> Locate(const SeenPoint& a, const SeenPoint& b,
+                                      const Sensor& sensor) {
   const double cos_parallax = a.ray_in_world.dot(b.ray_in_world);
   const double cos_a = CosStereoParallax(a, sensor.baseline());
   const double cos_b = CosStereoParallax(b, sensor.baseline());
@@ -82,12 +83,12 @@ std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor
   return UnprojectToWorld(cos_a < cos_b ? a : b, sensor);
 }
 
-bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& sensor) {
-  return IsInlier(sensor.camera, view.measurement, view.keyframe->cam_from_world * point);
+bool Reprojects(const SeenPoint& seen, const Eigen::Vector3d& point, const Sensor& sensor) {
+  return IsInlier(sensor.camera, seen.measurement, seen.keyframe->cam_from_world * point);
 }
 
 // A patch that is farther away is found at a finer level, so distance times scale is constant.
-bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& point,
+bool HasConsistentScale(const SeenPoint& a, const SeenPoint& b, const Eigen::Vector3d& point,
                         const Sensor& sensor) {
   const double distance_a = (a.keyframe->cam_from_world * point).norm();
   const double distance_b = (b.keyframe->cam_from_world * point).norm();
@@ -149,7 +150,7 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
       sensor.levels, {.lens = sensor.camera.IsFisheye() ? &sensor.camera : nullptr});
 }
 
-bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
+bool IsConsistent(const SeenPoint& a, const SeenPoint& b, const Eigen::Vector3d& point,
                   const Sensor& sensor) {
   return Reprojects(a, point, sensor) && Reprojects(b, point, sensor) &&
          HasConsistentScale(a, b, point, sensor);
@@ -194,9 +195,9 @@ class NearbyDepth {
   std::vector<Sample> samples_;
 };
 
-// The distance in image b, px, between a point of view a at this depth and a point that is
+// The distance in image b, px, between a point of a at this depth and a point that is
 // infinitely far away.
-double ParallaxAt(double depth, const View& a, const View& b, const Sensor& sensor) {
+double ParallaxAt(double depth, const SeenPoint& a, const SeenPoint& b, const Sensor& sensor) {
   const Rigid3 b_from_a = b.keyframe->cam_from_world * Inverse(a.keyframe->cam_from_world);
   const Eigen::Vector3d infinite = b_from_a.rotation * a.normalized.homogeneous();
   const Eigen::Vector3d point = infinite + b_from_a.translation / depth;
@@ -215,7 +216,7 @@ double ParallaxAt(double depth, const View& a, const View& b, const Sensor& sens
 // The pair's own parallax must not decide, because noise would select pairs that are too near. The
 // scale of the map would then shrink wherever the camera only turns. So the expected parallax is
 // computed from the depth of the landmarks that are nearest in the image.
-std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
+std::optional<Eigen::Vector3d> LocateMonocular(const SeenPoint& a, const SeenPoint& b,
                                                const NearbyDepth& nearby, const Sensor& sensor) {
   const std::optional<double> depth = nearby.At(sensor.ToGrid(a.pixel));
   const double noise = std::hypot(a.scale, b.scale);
@@ -240,8 +241,8 @@ std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& s
   for (const KeyframeId neighbour : neighbours) {
     for (const Match& pair :
          FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor, rules)) {
-      const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
-      const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
+      const SeenPoint a = MakeSeenPoint(map.keyframes().At(id), pair.query, sensor);
+      const SeenPoint b = MakeSeenPoint(map.keyframes().At(neighbour), pair.keypoint, sensor);
       const std::optional<Eigen::Vector3d> point =
           nearby ? LocateMonocular(a, b, *nearby, sensor) : Locate(a, b, sensor);
       if (!point || !IsConsistent(a, b, *point, sensor)) {

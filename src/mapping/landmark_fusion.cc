@@ -59,7 +59,7 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
     if (landmark == nullptr || std::binary_search(known.begin(), known.end(), id)) {
       continue;
     }
-    const auto view = ViewLandmark(sensor, map.keyframes().At(target).cam_from_world, *landmark);
+    const auto view = ProjectLandmark(sensor, map.keyframes().At(target).cam_from_world, *landmark);
     if (!view) {
       continue;
     }

@@ -25,12 +25,12 @@ namespace hullslam {
 namespace {
 
 // The scale of a monocular map is measured once objects of known size have this many observations.
-constexpr size_t kMinSizedViews = 10;
+constexpr size_t kMinSizedKeyframes = 10;
 // Smaller changes of the scale wait for the end of the run, because every change invalidates a loop
 // that is being computed.
 constexpr double kScaleTolerance = 0.01;
 
-size_t CountSizedViews(const Map& map, const std::map<std::string, double>& sizes) {
+size_t CountSizedKeyframes(const Map& map, const std::map<std::string, double>& sizes) {
   size_t views = 0;
   map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
     const bool is_sized = object.state == ObjectState::kMapped && sizes.contains(object.Label());
@@ -291,13 +291,13 @@ void Mapper::FollowKnownSizes(bool is_final) {
   if (!sensor_.IsMonocular() || !object_options_.enabled || sizes.empty()) {
     return;
   }
-  const size_t views = CountSizedViews(map_, sizes);
-  const bool is_due = is_final || views >= std::max(kMinSizedViews, 2 * sized_views_);
+  const size_t views = CountSizedKeyframes(map_, sizes);
+  const bool is_due = is_final || views >= std::max(kMinSizedKeyframes, 2 * sized_keyframes_);
   if (!is_due || Islands(map_).size() != 1) {
     return;  // each island has its own unit of length
   }
   const ScopedTimer timer(times_, "known_sizes");
-  sized_views_ = views;
+  sized_keyframes_ = views;
   const KnownScale scale = MeasureScale(map_, sensor_, sizes);
   const double tolerance = is_final ? 0.0 : kScaleTolerance;
   if (std::abs(std::log(scale.metres_per_unit)) > tolerance) {

@@ -115,7 +115,7 @@ class Mapper {
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
   Contradictions<LandmarkId> contradictions_;
   size_t contradicted_landmarks_ = 0;
-  size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
+  size_t sized_keyframes_ = 0;  // views of objects of known size when the scale was last measured
   std::atomic<bool> awaits_masks_ = false;
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;

@@ -28,6 +28,16 @@ std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence) {
   return frames;
 }
 
+std::vector<MaskFrame> RightMaskFrames(const ImageSequence& sequence) {
+  std::vector<MaskFrame> frames = MaskFrames(sequence);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (const std::filesystem::path& image = sequence.frames[i].right; !image.empty()) {
+      frames[i].stem = ImageStem(image.string());
+    }
+  }
+  return frames;
+}
+
 namespace {
 
 void Validate(const FrameMasks& masks, const MaskFrame& frame, const MaskRequest& size) {

@@ -86,8 +86,8 @@ Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const S
   for (const ObjectId id : mapped) {
     const bool is_found = std::find(arrangement.objects.begin(), arrangement.objects.end(), id) !=
                           arrangement.objects.end();
-    if (!is_found &&
-        ViewLocation(map, sensor, image, map.objects().At(id), options) == LocationView::kVisible) {
+    if (!is_found && FindVisibility(map, sensor, image, map.objects().At(id), options) ==
+                         LocationVisibility::kVisible) {
       ++arrangement.missed;
     }
   }

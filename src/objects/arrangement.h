@@ -16,7 +16,7 @@ struct Arrangement {
   std::vector<ObjectId> objects;  // one per detection; invalid where it shows no mapped object
   int matched = 0;                // detections that show a mapped object
   double overlap = 0.0;           // sum of the IoU of their hulls with the projected ellipses
-  int missed = 0;                 // mapped objects that the frame should show (LocationView)
+  int missed = 0;                 // mapped objects that the frame should show (LocationVisibility)
 
   // The sum of the overlaps, minus one half for each missed object.
   double Score() const { return overlap - 0.5 * missed; }

@@ -10,8 +10,8 @@
 #include "objects/carried_hull.h"
 #include "objects/combined_similarity.h"
 #include "objects/comparison/association_measure.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "objects/resolved_observation.h"
 #include "util/id_set.h"
 #include "util/sort_unique.h"
 
@@ -28,8 +28,8 @@ SeenObject Look(const AssociationInput& input, const Detection& detection,
                 const AssociationOptions& options) {
   SeenObject seen;
   seen.detection = &detection;
-  const ObjectView view{KeyframeId(), input.cam_from_world, &detection};
-  seen.cloud = CollectPoints({&view, 1}, static_cast<size_t>(options.cloud_points));
+  const ResolvedObservation observation{KeyframeId(), input.cam_from_world, &detection};
+  seen.cloud = CollectPoints({&observation, 1}, static_cast<size_t>(options.cloud_points));
   seen.centroid = MeanOf(seen.cloud);
   seen.noise = options.centroid_noise * (input.cam_from_world * seen.centroid).norm();
   for (const uint32_t keypoint : detection.keypoints) {
@@ -71,8 +71,8 @@ std::vector<ObjectId> FindCandidates(const AssociationInput& input) {
   return candidates;
 }
 
-// A prediction with the cloud of the last view only.
-PredictedObject Locate(ObjectId id, const ObjectLandmark& object, const ObjectView& last,
+// A prediction with the cloud of the last observation only.
+PredictedObject Locate(ObjectId id, const ObjectLandmark& object, const ResolvedObservation& last,
                        const AssociationOptions& options) {
   PredictedObject predicted;
   predicted.id = id;
@@ -82,8 +82,8 @@ PredictedObject Locate(ObjectId id, const ObjectLandmark& object, const ObjectVi
   return predicted;
 }
 
-// Completes a prediction from the latest views of the object.
-void Predict(const AssociationInput& input, std::span<const ObjectView> views,
+// Completes a prediction from the latest observations of the object.
+void Predict(const AssociationInput& input, std::span<const ResolvedObservation> observations,
              PredictedObject& predicted) {
   const Sensor& sensor = input.sensor;
   if (predicted.object->has_shape) {
@@ -95,13 +95,14 @@ void Predict(const AssociationInput& input, std::span<const ObjectView> views,
                                     Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y));
     predicted.ellipse = VisiblePart(predicted.projected->Polygon(32), sensor.camera, image);
   }
-  predicted.carried = CarryHull(sensor, views, input.cam_from_world);
-  for (const ObjectView& view : views) {
-    if (!view.detection->points.empty()) {
-      predicted.centroids.push_back(Centroid(view));
+  predicted.carried = CarryHull(sensor, observations, input.cam_from_world);
+  for (const ResolvedObservation& observation : observations) {
+    if (!observation.detection->points.empty()) {
+      predicted.centroids.push_back(Centroid(observation));
     }
-    for (const uint32_t keypoint : view.detection->keypoints) {
-      AddLandmark(input.map.keyframes().At(view.keyframe).landmarks[keypoint], predicted.landmarks);
+    for (const uint32_t keypoint : observation.detection->keypoints) {
+      AddLandmark(input.map.keyframes().At(observation.keyframe).landmarks[keypoint],
+                  predicted.landmarks);
     }
   }
   SortUnique(predicted.landmarks);
@@ -119,16 +120,16 @@ std::vector<PredictedObject> PredictAll(const AssociationInput& input,
     if (!is_wanted || object.observations.empty()) {
       continue;
     }
-    std::vector<ObjectView> views =
-        LatestViews(input.map, object, static_cast<size_t>(options.recent_views));
-    PredictedObject predicted = Locate(id, object, views.back(), options);
+    std::vector<ResolvedObservation> observations =
+        LatestObservations(input.map, object, static_cast<size_t>(options.recent_views));
+    PredictedObject predicted = Locate(id, object, observations.back(), options);
     const bool is_elsewhere = std::all_of(seen.begin(), seen.end(), [&](const SeenObject& one) {
       return AreApart(one, predicted, options);
     });
     if (!is_elsewhere) {
       AddSurfaceLandmarks(input.map,
-                          {&views.back(), 1});  // the last hull is carried at their depth
-      Predict(input, views, predicted);
+                          {&observations.back(), 1});  // the last hull is carried at their depth
+      Predict(input, observations, predicted);
       all.push_back(std::move(predicted));
     }
   }

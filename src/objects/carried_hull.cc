@@ -36,16 +36,17 @@ std::vector<double> PossibleInverseDepths(const PinholeCamera& camera, const Det
   return inverse_depths;
 }
 
-std::vector<double> InverseDepths(const PinholeCamera& camera, std::span<const ObjectView> views,
+std::vector<double> InverseDepths(const PinholeCamera& camera,
+                                  std::span<const ResolvedObservation> observations,
                                   const Rigid3& now_from_then) {
-  const ObjectView& last = views.back();
+  const ResolvedObservation& last = observations.back();
   if (!last.detection->points.empty()) {
     return {1.0 / MeanOf(last.detection->points.Unpack()).z()};
   }
   if (const auto depth = LandmarkDepth(last)) {
     return {1.0 / *depth};
   }
-  if (const auto sphere = StartFromRays(camera, views, {})) {
+  if (const auto sphere = StartFromRays(camera, observations, {})) {
     return {1.0 / (last.cam_from_world * sphere->world_from_object.translation).z()};
   }
   return PossibleInverseDepths(camera, *last.detection, now_from_then);
@@ -67,15 +68,16 @@ Polygon Move(const PinholeCamera& camera, const Polygon& hull, double inverse_de
 
 }  // namespace
 
-std::vector<Polygon> CarryHull(const Sensor& sensor, std::span<const ObjectView> views,
+std::vector<Polygon> CarryHull(const Sensor& sensor,
+                               std::span<const ResolvedObservation> observations,
                                const Rigid3& cam_from_world) {
-  const ObjectView& last = views.back();
+  const ResolvedObservation& last = observations.back();
   const Rigid3 now_from_then = cam_from_world * Inverse(last.cam_from_world);
   const PinholeCamera::Bounds& bounds = sensor.bounds;
   const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
                                   Eigen::Vector2d(bounds.max_x, bounds.max_y));
   std::vector<Polygon> carried;
-  for (const double inverse_depth : InverseDepths(sensor.camera, views, now_from_then)) {
+  for (const double inverse_depth : InverseDepths(sensor.camera, observations, now_from_then)) {
     const Polygon moved = Move(sensor.camera, last.detection->hull, inverse_depth, now_from_then);
     carried.push_back(moved.empty() ? moved : VisiblePart(moved, sensor.camera, image));
   }

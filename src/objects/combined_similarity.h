@@ -29,9 +29,9 @@ struct PredictedObject {
   std::optional<Ellipse> projected;                   // absent without a shape
   std::vector<Eigen::Vector2d> ellipse;               // projected, clipped to the image; or empty
   std::vector<std::vector<Eigen::Vector2d>> carried;  // CarryHull()
-  std::vector<LandmarkId> landmarks;                  // in its latest views, sorted
-  std::vector<Eigen::Vector3d> cloud;                 // depth points of its last view, world
-  std::vector<Eigen::Vector3d> centroids;  // one per latest view with depth points, world
+  std::vector<LandmarkId> landmarks;                  // in its latest observations, sorted
+  std::vector<Eigen::Vector3d> cloud;                 // depth points of its last observation, world
+  std::vector<Eigen::Vector3d> centroids;  // one per latest observation with depth points, world
   double size = 0.0;                       // SizeOf() the cloud
 };
 

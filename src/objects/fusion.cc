@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "map/islands.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "objects/resolved_observation.h"
 #include "util/id_set.h"
 #include "util/sort_unique.h"
 
@@ -53,11 +53,11 @@ size_t SharedKeyframes(const ObjectLandmark& a, const ObjectLandmark& b) {
   return shared.size();
 }
 
-std::vector<Eigen::Vector3d> Centroids(std::span<const ObjectView> views) {
+std::vector<Eigen::Vector3d> Centroids(std::span<const ResolvedObservation> observations) {
   std::vector<Eigen::Vector3d> centroids;
-  for (const ObjectView& view : views) {
-    if (!view.detection->points.empty()) {
-      centroids.push_back(Centroid(view));
+  for (const ResolvedObservation& observation : observations) {
+    if (!observation.detection->points.empty()) {
+      centroids.push_back(Centroid(observation));
     }
   }
   return centroids;
@@ -65,8 +65,8 @@ std::vector<Eigen::Vector3d> Centroids(std::span<const ObjectView> views) {
 
 bool MayHaveOneCentroid(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
                         const FusionOptions& options) {
-  const std::vector<ObjectView> views_a = CollectViews(map, a);
-  const std::vector<ObjectView> views_b = CollectViews(map, b);
+  const std::vector<ResolvedObservation> views_a = ResolveObservations(map, a);
+  const std::vector<ResolvedObservation> views_b = ResolveObservations(map, b);
   if (views_a.empty() || views_b.empty()) {
     return false;
   }

@@ -83,24 +83,26 @@ double AngularRadius(const PinholeCamera& camera, const Detection& detection) {
 // A sphere with this centre and the mean size of the boxes. Null if the centre is not in front of
 // all cameras.
 std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCamera& camera,
-                                  std::span<const ObjectView> views, const StartOptions& options) {
+                                  std::span<const ResolvedObservation> observations,
+                                  const StartOptions& options) {
   double radius = 0.0;
-  for (const ObjectView& view : views) {
-    const double depth = (view.cam_from_world * center).z();
+  for (const ResolvedObservation& observation : observations) {
+    const double depth = (observation.cam_from_world * center).z();
     if (depth <= 0.0) {
       return std::nullopt;
     }
     if (camera.IsFisheye()) {
-      radius += AngularRadius(camera, *view.detection) * (view.cam_from_world * center).norm();
+      radius += AngularRadius(camera, *observation.detection) *
+                (observation.cam_from_world * center).norm();
       continue;
     }
-    const Eigen::Vector2d sides = view.detection->box.sizes();
+    const Eigen::Vector2d sides = observation.detection->box.sizes();
     radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
   }
   Ellipsoid sphere;
   sphere.world_from_object.translation = center;
-  const double least = options.min_half_axis * MeanDistance(views, center);
-  sphere.half_axes.setConstant(std::max(least, radius / static_cast<double>(views.size())));
+  const double least = options.min_half_axis * MeanDistance(observations, center);
+  sphere.half_axes.setConstant(std::max(least, radius / static_cast<double>(observations.size())));
   return sphere;
 }
 
@@ -139,54 +141,55 @@ std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points,
 }
 
 std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
-                                       std::span<const ObjectView> views,
+                                       std::span<const ResolvedObservation> observations,
                                        const StartOptions& options) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  for (const ObjectView& view : views) {
-    const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+  for (const ResolvedObservation& observation : observations) {
+    const Rigid3 world_from_cam = Inverse(observation.cam_from_world);
     const Eigen::Vector3d ray =
-        world_from_cam.rotation * camera.Unproject(view.detection->box.center(), 1.0).normalized();
+        world_from_cam.rotation *
+        camera.Unproject(observation.detection->box.center(), 1.0).normalized();
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
     information += across;
     right_side += across * world_from_cam.translation;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  if (eigen.eigenvalues().x() < kMinRayInformation * static_cast<double>(views.size())) {
+  if (eigen.eigenvalues().x() < kMinRayInformation * static_cast<double>(observations.size())) {
     return std::nullopt;
   }
-  return SphereAt(information.ldlt().solve(right_side), camera, views, options);
+  return SphereAt(information.ldlt().solve(right_side), camera, observations, options);
 }
 
 std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
-                                            std::span<const ObjectView> views,
+                                            std::span<const ResolvedObservation> observations,
                                             const StartOptions& options) {
   std::array<std::vector<double>, 3> coordinates;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  for (const ObjectView& view : views) {
-    const std::optional<double> depth = LandmarkDepth(view);
+  for (const ResolvedObservation& observation : observations) {
+    const std::optional<double> depth = LandmarkDepth(observation);
     if (!depth) {
       continue;
     }
-    const Eigen::Vector3d in_camera = camera.Unproject(view.detection->box.center(), *depth);
-    const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+    const Eigen::Vector3d in_camera = camera.Unproject(observation.detection->box.center(), *depth);
+    const Rigid3 world_from_cam = Inverse(observation.cam_from_world);
     const Eigen::Vector3d point = world_from_cam * in_camera;
     for (size_t axis = 0; axis < 3; ++axis) {
       coordinates[axis].push_back(point[static_cast<Eigen::Index>(axis)]);
     }
     direction += world_from_cam.rotation * in_camera.normalized();
   }
-  if (2 * coordinates[0].size() < views.size() || coordinates[0].empty()) {
+  if (2 * coordinates[0].size() < observations.size() || coordinates[0].empty()) {
     return std::nullopt;
   }
   const Eigen::Vector3d surface(Median(coordinates[0]), Median(coordinates[1]),
                                 Median(coordinates[2]));
-  const auto in_front = SphereAt(surface, camera, views, options);
+  const auto in_front = SphereAt(surface, camera, observations, options);
   if (!in_front) {
     return std::nullopt;
   }
   return SphereAt(surface + kSurfaceToCenter * in_front->half_axes.x() * direction.normalized(),
-                  camera, views, options);
+                  camera, observations, options);
 }
 
 }  // namespace hullslam

@@ -9,7 +9,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
@@ -30,14 +30,14 @@ std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points,
 // centres of the bounding boxes, with the mean size of the boxes. Nothing if the rays are nearly
 // parallel or do not meet in front of all cameras.
 std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
-                                       std::span<const ObjectView> views,
+                                       std::span<const ResolvedObservation> observations,
                                        const StartOptions& options);
 
 // The start of an object without depth points whose landmarks have a known depth: a sphere with the
 // mean size of the boxes, whose surface is at the depth of the landmarks. Nothing if fewer than
-// half of the views have such a depth or if the sphere is not in front of all cameras.
+// half of the observations have such a depth or if the sphere is not in front of all cameras.
 std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
-                                            std::span<const ObjectView> views,
+                                            std::span<const ResolvedObservation> observations,
                                             const StartOptions& options);
 
 }  // namespace hullslam

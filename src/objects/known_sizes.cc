@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "objects/object_extents.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "util/median.h"
 
 namespace hullslam {
@@ -21,7 +21,8 @@ KnownScale MeasureScale(const Map& map, const Sensor& sensor,
     if (size == sizes.end()) {
       return;
     }
-    if (const auto extents = MeasureExtents(sensor, object.ellipsoid, CollectViews(map, object))) {
+    if (const auto extents =
+            MeasureExtents(sensor, object.ellipsoid, ResolveObservations(map, object))) {
       scales.insert(scales.end(), object.observations.size(), size->second / extents->sides.z());
       ++objects;
     }

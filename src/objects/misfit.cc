@@ -48,19 +48,21 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
 }
 
 std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                                        std::span<const ObjectView> views) {
+                                        std::span<const ResolvedObservation> observations) {
   std::vector<MisfitSample> samples;
-  samples.reserve(std::accumulate(
-      views.begin(), views.end(), size_t{0},
-      [](size_t sum, const ObjectView& view) { return sum + view.detection->lines.size(); }));
-  for (const ObjectView& view : views) {
-    for (const SilhouetteLine& line : view.detection->lines) {
+  samples.reserve(std::accumulate(observations.begin(), observations.end(), size_t{0},
+                                  [](size_t sum, const ResolvedObservation& observation) {
+                                    return sum + observation.detection->lines.size();
+                                  }));
+  for (const ResolvedObservation& observation : observations) {
+    for (const SilhouetteLine& line : observation.detection->lines) {
       if (line.is_one_sided) {
         continue;
       }
-      if (const auto plane = PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line)) {
+      if (const auto plane =
+              PlaneOfLine(camera, observation.cam_from_world, ellipsoid, line.line)) {
         samples.push_back(
-            {plane->normal.cast<float>(), static_cast<float>(plane->excess), view.keyframe});
+            {plane->normal.cast<float>(), static_cast<float>(plane->excess), observation.keyframe});
       }
     }
   }
@@ -119,21 +121,22 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
 }
 
 MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
-                           std::span<const ObjectView> views, const MisfitOptions& options) {
+                           std::span<const ResolvedObservation> observations,
+                           const MisfitOptions& options) {
   double plain = 0.0;
   double compensated = 0.0;
   size_t count = 0;
-  for (const ObjectView& view : views) {
-    for (const SilhouetteLine& line : view.detection->lines) {
-      const auto plane =
-          line.is_one_sided ? std::nullopt
-                            : PlaneOfLine(camera, view.cam_from_world, object.ellipsoid, line.line);
+  for (const ResolvedObservation& observation : observations) {
+    for (const SilhouetteLine& line : observation.detection->lines) {
+      const auto plane = line.is_one_sided ? std::nullopt
+                                           : PlaneOfLine(camera, observation.cam_from_world,
+                                                         object.ellipsoid, line.line);
       if (!plane) {
         continue;
       }
       const double excess = plane->excess * plane->raw_per_metre;
       const double predicted =
-          PredictExcess(object.misfit_samples, plane->normal, view.keyframe, options)
+          PredictExcess(object.misfit_samples, plane->normal, observation.keyframe, options)
               .value_or(0.0) *
           plane->raw_per_metre;
       plain += excess * excess;
@@ -146,18 +149,18 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
 }
 
 double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                      std::span<const ObjectView> views) {
+                      std::span<const ResolvedObservation> observations) {
   double squared_misfit = 0.0;
   double squared_size = 0.0;  // sum over the lines of the squared size of their mask
-  for (const ObjectView& view : views) {
-    for (const SilhouetteLine& line : view.detection->lines) {
-      const auto plane = line.is_one_sided
-                             ? std::nullopt
-                             : PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
+  for (const ResolvedObservation& observation : observations) {
+    for (const SilhouetteLine& line : observation.detection->lines) {
+      const auto plane =
+          line.is_one_sided ? std::nullopt
+                            : PlaneOfLine(camera, observation.cam_from_world, ellipsoid, line.line);
       if (plane) {
         const double pixels = plane->excess * plane->pixels_per_metre;
         squared_misfit += pixels * pixels;
-        squared_size += SignedArea(view.detection->hull);
+        squared_size += SignedArea(observation.detection->hull);
       }
     }
   }

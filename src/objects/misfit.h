@@ -11,16 +11,16 @@
 #include "hullslam/geometry/line2.h"
 #include "hullslam/map/object_landmark.h"
 #include "hullslam/objects/object_options.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
 // A line of a detection is the image of a plane through the camera's centre that touches the convex
 // hull of the real object. The excess is the support function of that hull (largest n . x over its
 // points, in the object's frame) minus the support function of the quadric. It depends only on the
-// plane's normal n in the object's frame. So an excess that was measured in one view is valid in
-// every other view that touches the object at the same n. The excess is the systematic part of the
-// misfit, and it can be predicted.
+// plane's normal n in the object's frame. So an excess that was measured in one observation is
+// valid in every other observation that touches the object at the same n. The excess is the
+// systematic part of the misfit, and it can be predicted.
 
 // The plane of a line: unit normal in the object's frame, distances and pixels at one pose.
 struct TangentPlane {
@@ -34,9 +34,9 @@ struct TangentPlane {
 std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                         const Ellipsoid& ellipsoid, const Line2& line);
 
-// The excess of all two-sided lines of the views.
+// The excess of all two-sided lines of the observations.
 std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                                        std::span<const ObjectView> views);
+                                        std::span<const ResolvedObservation> observations);
 
 // The excess at a normal, predicted from the samples of keyframes other than `left_out`: a locally
 // linear fit with Gaussian weights. Nothing if too few samples are near.
@@ -54,18 +54,19 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             KeyframeId left_out, std::vector<uint8_t>& known,
                                             const MisfitOptions& options = {});
 
-// RMS of the tangent distances of the views' two-sided lines, px: without compensation, and after
-// compensation with the samples of the other views.
+// RMS of the tangent distances of the observations' two-sided lines, px: without compensation, and
+// after compensation with the samples of the other observations.
 struct MisfitSpread {
   double plain_px = 0.0;
   double compensated_px = 0.0;
 };
 MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
-                           std::span<const ObjectView> views, const MisfitOptions& options = {});
+                           std::span<const ResolvedObservation> observations,
+                           const MisfitOptions& options = {});
 
-// RMS of the tangent distances of the views' two-sided lines over the RMS of the sizes of their
-// masks (the square root of the area of the hull). 0 if there is no two-sided line.
+// RMS of the tangent distances of the observations' two-sided lines over the RMS of the sizes of
+// their masks (the square root of the area of the hull). 0 if there is no two-sided line.
 double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                      std::span<const ObjectView> views);
+                      std::span<const ResolvedObservation> observations);
 
 }  // namespace hullslam

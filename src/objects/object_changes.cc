@@ -11,7 +11,7 @@
 
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "objects/visibility.h"
 
 namespace hullslam {
@@ -83,7 +83,7 @@ class Comparison {
     ObjectLandmark sought = former;
     sought.ellipsoid = InMap(map_, former_, former);
     changed.former = {id, sought.ellipsoid};
-    CountViews(later_, now, sought, changed);
+    CountKeyframes(later_, now, sought, changed);
     changed.change = Judge(changed, ObjectChange::kGone, ObjectChange::kNotSeen);
     if (changed.change != ObjectChange::kGone) {
       changed.now = Locate(now);
@@ -121,7 +121,7 @@ class Comparison {
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
     ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
-    CountViews(earlier_, id, object, changed);
+    CountKeyframes(earlier_, id, object, changed);
     changed.change = Judge(changed, ObjectChange::kNew, ObjectChange::kFirstSeen);
     if (changed.change == ObjectChange::kSeenAgain) {
       changed.change = ObjectChange::kFirstSeen;  // it was seen, but was not mapped
@@ -139,8 +139,8 @@ class Comparison {
                                                                      : ObjectChange::kSeenAgain;
   }
 
-  void CountViews(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object,
-                  ChangedObject& changed) const {
+  void CountKeyframes(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object,
+                      ChangedObject& changed) const {
     std::erase_if(object.observations, [&](const ObjectObservation& observation) {
       return !map_.keyframes().Contains(observation.keyframe);
     });
@@ -160,8 +160,8 @@ class Comparison {
     return IsReplaced(keyframe, object_id, object) ||
            SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
                        limits.min_seen_through) ||
-           ViewLocation(map_, sensor_, id, object, options_, limits.min_inside) ==
-               LocationView::kVisible;
+           FindVisibility(map_, sensor_, id, object, options_, limits.min_inside) ==
+               LocationVisibility::kVisible;
   }
 
   // Whether the keyframe shows another thing at the location of the object, or in front of it. The
@@ -264,8 +264,8 @@ class Comparison {
     }
     const ObjectLandmark& object = map_.objects().At(added.now->object);
     const auto hidden = std::count_if(earlier_.begin(), earlier_.end(), [&](KeyframeId id) {
-      return ViewLocation(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
-             LocationView::kHidden;
+      return FindVisibility(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
+             LocationVisibility::kHidden;
     });
     return hidden >= options_.changes.min_keyframes;
   }

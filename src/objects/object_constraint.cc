@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "costs/both_views.h"
 #include "costs/depth_anchor.h"
 #include "costs/make_object_cost.h"
 #include "costs/pixel_error.h"
@@ -42,13 +43,15 @@ std::unique_ptr<RobustRowsCost> MakeRobust(std::unique_ptr<ceres::CostFunction> 
   return std::make_unique<RobustRowsCost>(std::move(cost), std::move(loss), weight);
 }
 
-std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, const ObjectView& view,
+std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera,
+                                               const ResolvedObservation& observation,
                                                std::span<const SilhouetteLine> lines,
                                                const Ellipsoid& ellipsoid, double misfit_px,
-                                               const ObjectConstraintOptions& options) {
+                                               const ObjectConstraintOptions& options,
+                                               std::span<const SilhouetteLine> right_lines) {
   const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
-  auto sigma =
-      ResidualOfPixelError(options.residual, camera, view.cam_from_world, ellipsoid, sigma_px);
+  auto sigma = ResidualOfPixelError(options.residual, camera, observation.cam_from_world, ellipsoid,
+                                    sigma_px);
   if (!sigma) {
     return nullptr;
   }
@@ -57,31 +60,38 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, cons
   }
   std::optional<Ellipse> projected;
   if (NeedsProjection(options.residual)) {
-    projected = ProjectEllipsoid(camera.Matrix(), view.cam_from_world, ellipsoid);
+    projected = ProjectEllipsoid(camera.Matrix(), observation.cam_from_world, ellipsoid);
   }
   std::vector<SilhouetteLine> scaled;
   if (camera.IsFisheye() && options.residual == ObjectResidual::kTangent) {
-    scaled = ScaleToRaw(camera, *view.detection, lines);
+    scaled = ScaleToRaw(camera, *observation.detection, lines);
     lines = scaled;
   }
-  auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma, projected);
+  auto cost =
+      MakeObjectCost(options.residual, camera, *observation.detection, lines, *sigma, projected);
   if (cost == nullptr) {
     return nullptr;
+  }
+  if (!right_lines.empty() && TakesLines(options.residual)) {
+    cost = std::make_unique<BothViewsCost>(
+        std::move(cost),
+        MakeObjectCost(options.residual, camera, *view.detection, right_lines, *sigma),
+        camera.bf / camera.fx);
   }
   const double scale = std::max(options.loss_scale, options.min_loss_px / sigma_px);
   return MakeRobust(std::move(cost), MakeLoss(options.loss, scale), options.max_effective_lines);
 }
 
-std::unique_ptr<RobustRowsCost> MakeDepth(const ObjectView& view,
+std::unique_ptr<RobustRowsCost> MakeDepth(const ResolvedObservation& observation,
                                           const ObjectDepthOptions& options) {
   const auto count = static_cast<size_t>(options.max_points);
   const std::vector<Eigen::Vector3d> points = options.choice == PointChoice::kEven
-                                                  ? Thin(SurfacePoints(view), count)
-                                                  : EveryKth(SurfacePoints(view), count);
+                                                  ? Thin(SurfacePoints(observation), count)
+                                                  : EveryKth(SurfacePoints(observation), count);
   if (points.empty()) {
     return nullptr;
   }
-  const bool is_measured = !view.detection->points.empty();
+  const bool is_measured = !observation.detection->points.empty();
   const double sigma = is_measured ? options.sigma : options.landmark_sigma * MeanOf(points).norm();
   return MakeRobust(std::make_unique<DepthAnchorCost>(points, sigma),
                     MakeLoss(options.loss, options.loss_scale), options.max_effective_points);
@@ -89,12 +99,15 @@ std::unique_ptr<RobustRowsCost> MakeDepth(const ObjectView& view,
 
 }  // namespace
 
-ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectView& view,
+ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera,
+                                      const ResolvedObservation& observation,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
-                                      const ObjectConstraintOptions& options) {
-  return {.silhouette = MakeSilhouette(camera, view, lines, ellipsoid, misfit_px, options),
-          .depth = MakeDepth(view, options.depth)};
+                                      const ObjectConstraintOptions& options,
+                                      std::span<const SilhouetteLine> right_lines) {
+  return {.silhouette = MakeSilhouette(camera, observation, lines, ellipsoid, misfit_px, options,
+                                       right_lines),
+          .depth = MakeDepth(observation, options.depth)};
 }
 
 std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,

@@ -82,15 +82,15 @@ bool IsNearBorder(const Detection& detection, const Line2& line, const Sensor& s
 }
 
 std::vector<TouchingPlane> FindPlanes(const Sensor& sensor, const Ellipsoid& ellipsoid,
-                                      std::span<const ObjectView> views) {
+                                      std::span<const ResolvedObservation> observations) {
   std::vector<TouchingPlane> planes;
-  for (const ObjectView& view : views) {
-    for (const SilhouetteLine& line : view.detection->lines) {
-      if (line.is_one_sided || IsNearBorder(*view.detection, line.line, sensor)) {
+  for (const ResolvedObservation& observation : observations) {
+    for (const SilhouetteLine& line : observation.detection->lines) {
+      if (line.is_one_sided || IsNearBorder(*observation.detection, line.line, sensor)) {
         continue;
       }
       if (const auto plane =
-              PlaneOfLine(sensor.camera, view.cam_from_world, ellipsoid, line.line)) {
+              PlaneOfLine(sensor.camera, observation.cam_from_world, ellipsoid, line.line)) {
         const double quadric = ellipsoid.half_axes.cwiseProduct(plane->normal).norm();
         planes.push_back({plane->normal, plane->excess + quadric});
       }
@@ -139,8 +139,8 @@ std::optional<Fit> FitBody(Body body, std::span<const TouchingPlane> planes,
 }  // namespace
 
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
-                                            std::span<const ObjectView> views) {
-  const std::vector<TouchingPlane> planes = FindPlanes(sensor, ellipsoid, views);
+                                            std::span<const ResolvedObservation> observations) {
+  const std::vector<TouchingPlane> planes = FindPlanes(sensor, ellipsoid, observations);
   if (planes.size() < kMinPlanes) {
     return std::nullopt;
   }

@@ -7,7 +7,7 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
@@ -18,9 +18,9 @@ struct ObjectExtents {
   double misfit = 0.0;  // RMS distance of the tangent planes from the body, over the longest side
 };
 
-// Measures an object by the two-sided lines of its views: each is the image of a plane that touches
-// it (objects/misfit.h). Lines near the border of the image are left out, because networks end
-// masks some pixels before it. The axes of the quadric are not the sides of the object: the
+// Measures an object by the two-sided lines of its observations: each is the image of a plane that
+// touches it (objects/misfit.h). Lines near the border of the image are left out, because networks
+// end masks some pixels before it. The axes of the quadric are not the sides of the object: the
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
 // For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are fitted to
 // the planes, a box with the support function sum_i h_i |n_i| and an ellipsoid with sqrt(sum_i (h_i
@@ -28,6 +28,6 @@ struct ObjectExtents {
 // rotation are free. The body that fits better is chosen. Nothing if there are too few planes or if
 // neither body fits.
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
-                                            std::span<const ObjectView> views);
+                                            std::span<const ResolvedObservation> observations);
 
 }  // namespace hullslam

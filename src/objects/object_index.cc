@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "map/islands.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 namespace {
@@ -19,9 +19,9 @@ constexpr double kMargin = 1.05;
 constexpr double kNearPlane = 1.2;
 
 // The part of space that an image shows, in the frame of the camera.
-class ViewVolume {
+class Frustum {
  public:
-  explicit ViewVolume(const Sensor& sensor) {
+  explicit Frustum(const Sensor& sensor) {
     const PinholeCamera& camera = sensor.camera;
     const PinholeCamera::Bounds& bounds = sensor.bounds;
     inwards_ = {Eigen::Vector3d::UnitZ(),
@@ -70,7 +70,7 @@ void ObjectIndex::Add(const Map& map, const PinholeCamera& camera, ObjectId id,
     spheres_.push_back({object.ellipsoid.world_from_object.translation,
                         kMargin * object.ellipsoid.half_axes.maxCoeff(), id, island});
   }
-  const ObjectView last = LatestViews(map, object, 1).front();
+  const ResolvedObservation last = LatestObservations(map, object, 1).front();
   const Eigen::AlignedBox2d& box = last.detection->box;
   if (last.detection->points.empty() || box.isEmpty()) {
     spheres_.push_back(
@@ -89,7 +89,7 @@ void ObjectIndex::Add(const Map& map, const PinholeCamera& camera, ObjectId id,
 
 std::vector<ObjectId> ObjectIndex::FindVisible(const Sensor& sensor, const Rigid3& cam_from_world,
                                                IslandId island) const {
-  const ViewVolume volume(sensor);
+  const Frustum volume(sensor);
   std::vector<ObjectId> visible;
   for (const Sphere& sphere : spheres_) {
     const bool is_new = visible.empty() || visible.back() != sphere.object;

@@ -11,8 +11,8 @@
 namespace hullslam {
 
 // The locations of the objects of a map, as a list of spheres: one around the ellipsoid of each
-// object and one around its hull in its last view. Finding the objects in an image takes a few
-// nanoseconds per object. The index does not follow changes of the map.
+// object and one around its hull in its last observation. Finding the objects in an image takes a
+// few nanoseconds per object. The index does not follow changes of the map.
 class ObjectIndex {
  public:
   ObjectIndex() = default;

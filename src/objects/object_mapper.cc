@@ -17,9 +17,9 @@
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/misfit.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"
+#include "objects/resolved_observation.h"
 #include "objects/start_method.h"
 #include "objects/visibility.h"
 #include "util/sort_unique.h"
@@ -29,12 +29,13 @@ namespace {
 
 constexpr size_t kFewPoints = 20;  // number of points that are averaged for the centre of an object
 
-// Whether the shape should be computed again. The more views there are, the less a new view
-// changes, so this is done when the number of views has grown by an eighth. (Bundle adjustment
-// improves the shape with every keyframe.)
+// Whether the shape should be computed again. The more observations there are, the less a new
+// observation changes, so this is done when the number of observations has grown by an eighth.
+// (Bundle adjustment improves the shape with every keyframe.)
 bool IsDue(const ObjectLandmark& object) {
-  const size_t views = object.observations.size();
-  return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
+  const size_t observations = object.observations.size();
+  return observations < object.shaped_views ||
+         observations > object.shaped_views + object.shaped_views / 8;
 }
 
 // The spheres that an object without depth can start from.
@@ -45,10 +46,11 @@ struct StartSpheres {
   const std::optional<Ellipsoid>& Better() const { return by_landmarks ? by_landmarks : by_rays; }
 };
 
-StartSpheres FindStartSpheres(const PinholeCamera& camera, std::span<const ObjectView> views,
+StartSpheres FindStartSpheres(const PinholeCamera& camera,
+                              std::span<const ResolvedObservation> observations,
                               const StartOptions& options) {
-  return {.by_landmarks = StartFromLandmarks(camera, views, options),
-          .by_rays = StartFromRays(camera, views, options)};
+  return {.by_landmarks = StartFromLandmarks(camera, observations, options),
+          .by_rays = StartFromRays(camera, observations, options)};
 }
 
 struct RefinedStart {
@@ -59,12 +61,13 @@ struct RefinedStart {
 // Refines every start and returns the one with the least cost. Its refinement is not usable if the
 // solver failed for all of them.
 RefinedStart RefineBest(std::span<const Ellipsoid> starts, const Sensor& sensor,
-                        std::span<const ObjectView> views, const ObjectRefinementOptions& options) {
+                        std::span<const ResolvedObservation> observations,
+                        const ObjectRefinementOptions& options) {
   RefinedStart best;
   best.refinement.cost = std::numeric_limits<double>::infinity();
   for (const Ellipsoid& start : starts) {
     const Refinement refined =
-        RefineEllipsoid(start, start, sensor, views, options.max_misfit_px, options);
+        RefineEllipsoid(start, start, sensor, observations, options.max_misfit_px, options);
     if (refined.is_usable && refined.cost < best.refinement.cost) {
       best = {.start = start, .refinement = refined};
     }
@@ -127,7 +130,7 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
     }
     const bool is_found = std::find(observed.begin(), observed.end(), id) != observed.end();
     if (is_found ||
-        ViewLocation(map, sensor_, keyframe, *object, options_) == LocationView::kVisible) {
+        FindVisibility(map, sensor_, keyframe, *object, options_) == LocationVisibility::kVisible) {
       visible.emplace_back(id, is_found);
     }
   }
@@ -138,54 +141,56 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
   }
 }
 
-// The views that an object needs to be mapped or to stay mapped. Keyframes are culled, so a mapped
-// object need not keep as many views as its start takes, if this is more than the usual number.
-size_t ObjectMapper::NeededViews(const ObjectLandmark& object) const {
+// The observations that an object needs to be mapped or to stay mapped. Keyframes are culled, so a
+// mapped object need not keep as many observations as its start takes, if this is more than the
+// usual number.
+size_t ObjectMapper::NeededKeyframes(const ObjectLandmark& object) const {
   constexpr int kToStay = 3;
   const int needed = options_.start.min_views;
   return static_cast<size_t>(object.state == ObjectState::kMapped ? std::min(needed, kToStay)
                                                                   : needed);
 }
 
-Objection ObjectMapper::FewViews(const ObjectLandmark& object) const {
-  return {ObjectRejection::kFewViews, fmt::format("{} keyframes, expected at least {}",
-                                                  object.observations.size(), NeededViews(object))};
+Objection ObjectMapper::FewKeyframes(const ObjectLandmark& object) const {
+  return {ObjectRejection::kFewKeyframes,
+          fmt::format("{} keyframes, expected at least {}", object.observations.size(),
+                      NeededKeyframes(object))};
 }
 
 void ObjectMapper::Update(Map& map, ObjectId id) {
   changed_.push_back(id);
   const ObjectLandmark& object = map.objects().At(id);
-  if (object.observations.size() < NeededViews(object)) {
-    Reject(map, id, FewViews(object));
+  if (object.observations.size() < NeededKeyframes(object)) {
+    Reject(map, id, FewKeyframes(object));
     return;
   }
   if (!IsDue(object)) {
     return;
   }
   map.MutableObject(id).shaped_views = object.observations.size();
-  std::vector<ObjectView> views =
-      CollectViews(map, object, static_cast<size_t>(options_.refinement.max_views));
-  AddSurfaceLandmarks(map, views);
+  std::vector<ResolvedObservation> observations =
+      ResolveObservations(map, object, static_cast<size_t>(options_.refinement.max_views));
+  AddSurfaceLandmarks(map, observations);
   if (object.state == ObjectState::kMapped) {
-    Refine(map, id, views);
+    Refine(map, id, observations);
   } else {
-    Start(map, id, views);
+    Start(map, id, observations);
   }
 }
 
 // Computes the shape of a candidate: refines several starts and takes the best result.
-void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
-  const bool has_depth = HasDepth(views);
+void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations) {
+  const bool has_depth = HasDepth(observations);
   const StartSpheres spheres =
-      has_depth ? StartSpheres{} : FindStartSpheres(sensor_.camera, views, options_.start);
+      has_depth ? StartSpheres{} : FindStartSpheres(sensor_.camera, observations, options_.start);
   const std::optional<Ellipsoid>& sphere = spheres.Better();
   if (!has_depth && !sphere) {
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to the object do not meet"});
     return;
   }
-  const Eigen::Vector3d center =
-      sphere ? sphere->world_from_object.translation : MeanOf(CollectPoints(views, kFewPoints));
-  const double parallax = Parallax(views, center);
+  const Eigen::Vector3d center = sphere ? sphere->world_from_object.translation
+                                        : MeanOf(CollectPoints(observations, kFewPoints));
+  const double parallax = Parallax(observations, center);
   const double min_parallax = has_depth || spheres.by_landmarks
                                   ? options_.start.min_parallax
                                   : options_.start.min_parallax_without_depth;
@@ -198,15 +203,15 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   }
   const std::vector<Ellipsoid> starts =
       MethodOf(options_.start.method)({.camera = sensor_.camera,
-                                       .views = views,
+                                       .observations = observations,
                                        .center = center,
                                        .has_depth = has_depth,
                                        .options = options_.start});
   if (starts.empty()) {
-    Reject(map, id, {ObjectRejection::kNoStart, "too few points or views for a start"});
+    Reject(map, id, {ObjectRejection::kNoStart, "too few points or observations for a start"});
     return;
   }
-  const RefinedStart best = RefineBest(starts, sensor_, views, options_.refinement);
+  const RefinedStart best = RefineBest(starts, sensor_, observations, options_.refinement);
   if (!best.refinement.is_usable) {
     Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
     return;
@@ -215,7 +220,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   object.has_shape = true;
   object.ellipsoid = best.refinement.ellipsoid;
   object.start = best.start;
-  if (const auto objection = FindObjection(object.ellipsoid, sensor_, views, options_.validity)) {
+  if (const auto objection =
+          FindObjection(object.ellipsoid, sensor_, observations, options_.validity)) {
     Reject(map, id, *objection);
     return;
   }
@@ -226,34 +232,37 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     return;
   }
   object.state = ObjectState::kMapped;
-  Accept(map, id, views);
+  Accept(map, id, observations);
   spdlog::debug("object {} ({}): mapped from {} keyframes with {:.1f} degrees of parallax",
                 id.value, object.Label(), object.observations.size(), parallax);
 }
 
-void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> views) {
+void ObjectMapper::Refine(Map& map, ObjectId id,
+                          std::span<const ResolvedObservation> observations) {
   const ObjectLandmark& object = map.objects().At(id);
-  const Refinement refined = RefineEllipsoid(object.ellipsoid, object.start, sensor_, views,
+  const Refinement refined = RefineEllipsoid(object.ellipsoid, object.start, sensor_, observations,
                                              object.misfit_px, options_.refinement);
   if (!refined.is_usable) {
     Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
     return;
   }
-  if (const auto objection = FindObjection(refined.ellipsoid, sensor_, views, options_.validity)) {
+  if (const auto objection =
+          FindObjection(refined.ellipsoid, sensor_, observations, options_.validity)) {
     Reject(map, id, *objection);
     return;
   }
   map.MutableObject(id).ellipsoid = refined.ellipsoid;
-  Accept(map, id, views);
+  Accept(map, id, observations);
 }
 
 // Measures the misfit of a valid quadric.
-void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const {
-  const std::vector<ObjectView> latest =
-      LatestViews(map, map.objects().At(id), static_cast<size_t>(options_.misfit.views));
+void ObjectMapper::Accept(Map& map, ObjectId id,
+                          std::span<const ResolvedObservation> observations) const {
+  const std::vector<ResolvedObservation> latest =
+      LatestObservations(map, map.objects().At(id), static_cast<size_t>(options_.misfit.views));
   ObjectLandmark& object = map.MutableObject(id);
   object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, latest);
-  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views, options_.misfit);
+  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, observations, options_.misfit);
   object.misfit_px = spread.plain_px;
   object.compensated_px = spread.compensated_px;
 }
@@ -265,18 +274,18 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
     if (object == nullptr || object->state != ObjectState::kMapped) {
       continue;
     }
-    if (object->observations.size() < NeededViews(*object)) {
-      Reject(map, id, FewViews(*object));  // keyframes that observed it were culled
+    if (object->observations.size() < NeededKeyframes(*object)) {
+      Reject(map, id, FewKeyframes(*object));  // keyframes that observed it were culled
       continue;
     }
-    const std::vector<ObjectView> views =
-        CollectViews(map, *object, static_cast<size_t>(options_.refinement.max_views));
+    const std::vector<ResolvedObservation> observations =
+        ResolveObservations(map, *object, static_cast<size_t>(options_.refinement.max_views));
     if (const auto objection =
-            FindObjection(object->ellipsoid, sensor_, views, options_.validity)) {
+            FindObjection(object->ellipsoid, sensor_, observations, options_.validity)) {
       Reject(map, id, *objection);
-      map.MutableObject(id).shaped_views = 0;  // compute the shape again with the next view
+      map.MutableObject(id).shaped_views = 0;  // compute the shape again with the next observation
     } else {
-      Accept(map, id, views);
+      Accept(map, id, observations);
     }
   }
 }

@@ -50,11 +50,11 @@ class ObjectMapper {
   void Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe);
   void CountVisible(Map& map, const ObjectIndex& index, KeyframeId keyframe) const;
   void Update(Map& map, ObjectId id);
-  void Start(Map& map, ObjectId id, std::span<const ObjectView> views);
-  void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
-  void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
-  size_t NeededViews(const ObjectLandmark& object) const;
-  Objection FewViews(const ObjectLandmark& object) const;
+  void Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations);
+  void Refine(Map& map, ObjectId id, std::span<const ResolvedObservation> observations);
+  void Accept(Map& map, ObjectId id, std::span<const ResolvedObservation> observations) const;
+  size_t NeededKeyframes(const ObjectLandmark& object) const;
+  Objection FewKeyframes(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map, KeyframeId keyframe);
   std::vector<ObjectId> TakeChanged(const Map& map, KeyframeId keyframe);
   std::optional<Objection> ReasonToCull(const Map& map, KeyframeId keyframe, ObjectId id);

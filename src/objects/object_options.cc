@@ -112,18 +112,12 @@ void ChangeOptions::Bind(const OptionScope& scope) {
 void ObjectRefinementOptions::Bind(const OptionScope& scope) {
   BindOutline(scope, Range::Between(0.1, 1000.0), constraint);
   BindDepthPoints(scope, constraint);
-  scope.Add("landmark_sigma", &constraint.depth.landmark_sigma, Range::Between(0.001, 100.0),
-            "standard deviation of the distance of landmarks from the surface of a quadric without "
-            "depth, as a share of their distance from the camera");
   scope.Add("max_views", &max_views, Range::Between(2, 10000),
             "largest number of keyframes that are used to refine a quadric");
   scope.Add("min_misfit_px", &min_misfit_px, Range::Between(0.1, 100.0),
             "least standard deviation of a line when a quadric is refined, px");
   scope.Add("max_misfit_px", &max_misfit_px, Range::Between(0.1, 100.0),
             "largest standard deviation of a line when a quadric is refined, px");
-  scope.Add("loss_px", &loss_px, Range::Between(0.1, 1000.0),
-            "scale of the robust loss, px, for a line with the standard deviation "
-            "objects.refinement.max_misfit_px");
 }
 
 void ObjectPoseOptions::Bind(const OptionScope& scope) {

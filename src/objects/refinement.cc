@@ -27,19 +27,20 @@ ObjectConstraintOptions ConstraintOf(const ObjectRefinementOptions& options) {
 class RefinementProblem {
  public:
   RefinementProblem(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
-                    std::span<const ObjectView> views, double misfit_px,
+                    std::span<const ResolvedObservation> observations, double misfit_px,
                     const ObjectConstraintOptions& options)
       : object_(ToBlock(ellipsoid.world_from_object)),
         log_axes_(ellipsoid.half_axes.array().log()) {
-    poses_.reserve(views.size());
+    poses_.reserve(observations.size());
     bool has_depth = false;
-    for (const ObjectView& view : views) {
-      poses_.push_back(ToBlock(view.cam_from_world));
-      ObjectConstraint constraint = MakeObjectConstraint(sensor.camera, view, view.detection->lines,
-                                                         ellipsoid, misfit_px, options);
+    for (const ResolvedObservation& observation : observations) {
+      poses_.push_back(ToBlock(observation.cam_from_world));
+      ObjectConstraint constraint =
+          MakeObjectConstraint(sensor.camera, observation, observation.detection->lines, ellipsoid,
+                               misfit_px, options, observation.detection->right_lines);
       Add(std::move(constraint.silhouette), poses_.back());
       Add(std::move(constraint.depth), poses_.back());
-      has_depth = has_depth || !view.detection->points.empty();
+      has_depth = has_depth || !observation.detection->points.empty();
     }
     problem_.AddResidualBlock(MakeObjectPrior(start, has_depth, options).release(), nullptr,
                               object_.data(), log_axes_.data());
@@ -91,11 +92,12 @@ class RefinementProblem {
 }  // namespace
 
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
-                           std::span<const ObjectView> views, double misfit_px,
+                           std::span<const ResolvedObservation> observations, double misfit_px,
                            const ObjectRefinementOptions& options) {
   const double bounded_px = std::clamp(
       misfit_px, std::min(options.min_misfit_px, options.max_misfit_px), options.max_misfit_px);
-  RefinementProblem problem(ellipsoid, start, sensor, views, bounded_px, ConstraintOf(options));
+  RefinementProblem problem(ellipsoid, start, sensor, observations, bounded_px,
+                            ConstraintOf(options));
   const std::optional<double> cost = problem.Solve(options.iterations);
   if (!cost) {
     return {ellipsoid, 0.0, false};

@@ -6,7 +6,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
@@ -16,14 +16,14 @@ struct Refinement {
   bool is_usable = false;  // false if the solver failed; then the ellipsoid is the given one
 };
 
-// Returns the ellipsoid that best fits the views. The solver begins with `ellipsoid`; poses are
-// fixed. The lines of the detections constrain the ellipsoid, and depth points constrain its
-// surface. A prior about `start` is needed because views from similar directions do not determine
-// the extent along the viewing direction. The better an object fits an ellipsoid, the more precise
-// its lines are. The misfit measures this, so it sets the sigma of the lines: `misfit_px`, clamped
-// to the bounds of the options.
+// Returns the ellipsoid that best fits the observations. The solver begins with `ellipsoid`; poses
+// are fixed. The lines of the detections constrain the ellipsoid, and depth points constrain its
+// surface. A prior about `start` is needed because observations from similar directions do not
+// determine the extent along the viewing direction. The better an object fits an ellipsoid, the
+// more precise its lines are. The misfit measures this, so it sets the sigma of the lines:
+// `misfit_px`, clamped to the bounds of the options.
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
-                           std::span<const ObjectView> views, double misfit_px,
+                           std::span<const ResolvedObservation> observations, double misfit_px,
                            const ObjectRefinementOptions& options);
 
 }  // namespace hullslam

@@ -7,7 +7,7 @@ namespace hullslam {
 
 // Why an object is not mapped, or not any more.
 enum class ObjectRejection {
-  kFewViews,        // fewer keyframes than needed
+  kFewKeyframes,    // fewer keyframes than needed
   kLittleParallax,  // the rays to it are nearly parallel
   kNoStart,         // too few depth points, or rays that do not meet
   kNotRefined,      // the solver failed

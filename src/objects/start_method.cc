@@ -40,13 +40,13 @@ std::vector<std::string> ObjectStartNames() {
 std::vector<Ellipsoid> StartFitted(const StartInput& input) {
   if (input.has_depth) {
     return StartsFromPoints(
-        CollectPoints(input.views, static_cast<size_t>(input.options.max_points)),
-        MeanDistance(input.views, input.center), input.options);
+        CollectPoints(input.observations, static_cast<size_t>(input.options.max_points)),
+        MeanDistance(input.observations, input.center), input.options);
   }
   std::vector<Ellipsoid> starts;
   for (const std::optional<Ellipsoid>& sphere :
-       {StartFromLandmarks(input.camera, input.views, input.options),
-        StartFromRays(input.camera, input.views, input.options)}) {
+       {StartFromLandmarks(input.camera, input.observations, input.options),
+        StartFromRays(input.camera, input.observations, input.options)}) {
     if (sphere) {
       starts.push_back(*sphere);
     }
@@ -55,7 +55,8 @@ std::vector<Ellipsoid> StartFitted(const StartInput& input) {
 }
 
 std::vector<Ellipsoid> StartByRays(const StartInput& input) {
-  const std::optional<Ellipsoid> sphere = StartFromRays(input.camera, input.views, input.options);
+  const std::optional<Ellipsoid> sphere =
+      StartFromRays(input.camera, input.observations, input.options);
   return sphere ? std::vector<Ellipsoid>{*sphere} : std::vector<Ellipsoid>();
 }
 

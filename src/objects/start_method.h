@@ -9,20 +9,21 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
 // The input of a start method. The references must outlive this struct.
 struct StartInput {
   const PinholeCamera& camera;
-  std::span<const ObjectView> views;  // with their surface landmarks (AddSurfaceLandmarks)
-  Eigen::Vector3d center;             // about where the object is, world
-  bool has_depth = false;             // HasDepth(views)
+  std::span<const ResolvedObservation>
+      observations;        // with their surface landmarks (AddSurfaceLandmarks)
+  Eigen::Vector3d center;  // about where the object is, world
+  bool has_depth = false;  // HasDepth(observations)
   const StartOptions& options;
 };
 
-// The quadrics from which refinement may begin. Empty if the views do not give any.
+// The quadrics from which refinement may begin. Empty if the observations do not give any.
 using StartMethod = std::vector<Ellipsoid>(const StartInput& input);
 
 // Each method has its own file, and a row in the table of start_method.cc.

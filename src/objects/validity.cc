@@ -50,14 +50,14 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
 }
 
 std::optional<Objection> CheckElongation(const Ellipsoid& ellipsoid,
-                                         std::span<const ObjectView> views,
+                                         std::span<const ResolvedObservation> observations,
                                          const ValidityOptions& options) {
-  const double elongation = Elongation(ellipsoid, views);
+  const double elongation = Elongation(ellipsoid, observations);
   if (elongation <= options.max_elongation) {
     return std::nullopt;
   }
   const double needed = options.elongation_parallax * elongation;
-  const double parallax = Parallax(views, ellipsoid.world_from_object.translation);
+  const double parallax = Parallax(observations, ellipsoid.world_from_object.translation);
   if (parallax >= needed) {
     return std::nullopt;
   }
@@ -81,11 +81,11 @@ double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOp
                   options.near_surface_share * ellipsoid.half_axes.mean());
 }
 
-double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views) {
+double Elongation(const Ellipsoid& ellipsoid, std::span<const ResolvedObservation> observations) {
   const Eigen::Vector3d& center = ellipsoid.world_from_object.translation;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  for (const ObjectView& view : views) {
-    direction += (center - Inverse(view.cam_from_world).translation).normalized();
+  for (const ResolvedObservation& observation : observations) {
+    direction += (center - Inverse(observation.cam_from_world).translation).normalized();
   }
   direction.normalize();
   const Eigen::Vector3d in_object = ellipsoid.world_from_object.rotation.conjugate() * direction;
@@ -97,29 +97,30 @@ double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views)
 }
 
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
-                   std::span<const ObjectView> views) {
+                   std::span<const ResolvedObservation> observations) {
   const Eigen::AlignedBox2d image(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
                                   Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y));
   double sum = 0.0;
-  for (const ObjectView& view : views) {
-    const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid);
+  for (const ResolvedObservation& observation : observations) {
+    const auto ellipse =
+        ProjectEllipsoid(sensor.camera.Matrix(), observation.cam_from_world, ellipsoid);
     if (ellipse) {
-      sum += Overlap(VisiblePart(ellipse->Polygon(), sensor.camera, image), *view.detection);
+      sum += Overlap(VisiblePart(ellipse->Polygon(), sensor.camera, image), *observation.detection);
     }
   }
-  return sum / static_cast<double>(std::max<size_t>(1, views.size()));
+  return sum / static_cast<double>(std::max<size_t>(1, observations.size()));
 }
 
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
-                                       std::span<const ObjectView> views,
+                                       std::span<const ResolvedObservation> observations,
                                        const ValidityOptions& options) {
-  for (const ObjectView& view : views) {
-    if (!ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid)) {
+  for (const ResolvedObservation& observation : observations) {
+    if (!ProjectEllipsoid(sensor.camera.Matrix(), observation.cam_from_world, ellipsoid)) {
       return Objection{ObjectRejection::kNotInFront,
-                       fmt::format("not in front of keyframe {}", view.keyframe.value)};
+                       fmt::format("not in front of keyframe {}", observation.keyframe.value)};
     }
   }
-  const double distance = MeanDistance(views, ellipsoid.world_from_object.translation);
+  const double distance = MeanDistance(observations, ellipsoid.world_from_object.translation);
   const double least = options.min_half_axis * distance;
   const double largest = options.max_half_axis * distance;
   if (!(ellipsoid.half_axes.minCoeff() >= least) || !(ellipsoid.half_axes.maxCoeff() <= largest)) {
@@ -128,13 +129,13 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
                                  ellipsoid.half_axes.minCoeff(), ellipsoid.half_axes.maxCoeff(),
                                  least, largest)};
   }
-  const double overlap = MeanOverlap(ellipsoid, sensor, views);
+  const double overlap = MeanOverlap(ellipsoid, sensor, observations);
   if (!(overlap >= options.min_overlap)) {
     return Objection{ObjectRejection::kLowOverlap,
                      fmt::format("mean IoU of ellipse and hull {:.2f}, expected at least {:.2f}",
                                  overlap, options.min_overlap)};
   }
-  const double misfit = RelativeMisfit(sensor.camera, ellipsoid, views);
+  const double misfit = RelativeMisfit(sensor.camera, ellipsoid, observations);
   if (!(misfit <= options.max_misfit)) {
     return Objection{
         ObjectRejection::kLargeMisfit,
@@ -142,10 +143,10 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
             "its outline is off by {:.2f} of the size of the masks, expected at most {:.2f}",
             misfit, options.max_misfit)};
   }
-  if (const auto objection = CheckElongation(ellipsoid, views, options)) {
+  if (const auto objection = CheckElongation(ellipsoid, observations, options)) {
     return objection;
   }
-  const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMaxPoints);
+  const std::vector<Eigen::Vector3d> points = CollectPoints(observations, kMaxPoints);
   return points.size() >= kMinDepthPoints
              ? CheckPoints(ellipsoid, points, NearSurface(ellipsoid, distance, options), options)
              : std::nullopt;

@@ -8,14 +8,14 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "objects/object_view.h"
 #include "objects/rejection.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
-// Why a quadric is not valid for the views of its object, with the measured value.
+// Why a quadric is not valid for the observations of its object, with the measured value.
 struct Objection {
-  ObjectRejection reason = ObjectRejection::kFewViews;
+  ObjectRejection reason = ObjectRejection::kFewKeyframes;
   std::string detail;  // "mean IoU 0.31, expected at least 0.40"
 };
 
@@ -27,20 +27,20 @@ double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOp
 // the mean IoU of projected ellipse and hull is large enough; the misfit is not too large for the
 // size of the masks; the parallax is large enough for its elongation; and with depth: enough points
 // are inside or near the surface, and no half axis reaches far beyond the points. Returns nothing
-// for a valid quadric. Needs at least one view.
+// for a valid quadric. Needs at least one observation.
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
-                                       std::span<const ObjectView> views,
+                                       std::span<const ResolvedObservation> observations,
                                        const ValidityOptions& options);
 
 // Let q be the extent of a quadric along the mean viewing direction over its extent across it. The
 // elongation is the larger one of q and 1 / (4 q) (ValidityOptions::max_elongation). It is at least
 // 0.5.
-double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views);
+double Elongation(const Ellipsoid& ellipsoid, std::span<const ResolvedObservation> observations);
 
-// Mean over the views of the IoU of hull and projected ellipse, which is clipped to the image. If
-// the mask is a box, the bounding boxes are compared. A view counts as 0 if the ellipsoid is not in
-// front of its camera.
+// Mean over the observations of the IoU of hull and projected ellipse, which is clipped to the
+// image. If the mask is a box, the bounding boxes are compared. An observation counts as 0 if the
+// ellipsoid is not in front of its camera.
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
-                   std::span<const ObjectView> views);
+                   std::span<const ResolvedObservation> observations);
 
 }  // namespace hullslam

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/polyline.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "objects/validity.h"
 
 namespace hullslam {
@@ -134,20 +134,20 @@ bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& 
 
 }  // namespace
 
-LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                          const ObjectLandmark& object, const ObjectOptions& options,
-                          double min_inside) {
+LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                                  const ObjectLandmark& object, const ObjectOptions& options,
+                                  double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
   if (!ellipse || !(ShareInside(*ellipse, sensor) >= min_inside)) {
-    return LocationView::kOutside;
+    return LocationVisibility::kOutside;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
   const double distance = in_cam.world_from_object.translation.norm();
-  const double farthest =
-      FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
+  const double farthest = LargestDistance(ResolveObservations(map, object),
+                                          object.ellipsoid.world_from_object.translation);
   if (distance > options.culling.max_range * farthest) {
-    return LocationView::kOutside;
+    return LocationVisibility::kOutside;
   }
   // A smaller difference of depth may come from the object's own surface.
   const double depth =
@@ -160,18 +160,18 @@ LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowl
                   [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
   }
   return counter.IsHidden(options.culling.max_hidden) || IsBehindObject(map, image, *ellipse, depth)
-             ? LocationView::kHidden
-             : LocationView::kVisible;
+             ? LocationVisibility::kHidden
+             : LocationVisibility::kVisible;
 }
 
-LocationView ViewLocation(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                          const ObjectLandmark& object, const ObjectOptions& options,
-                          double min_inside) {
+LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                                  const ObjectLandmark& object, const ObjectOptions& options,
+                                  double min_inside) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  return ViewLocation(map, sensor,
-                      ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
-                                     observer.objects},
-                      object, options, min_inside);
+  return FindVisibility(map, sensor,
+                        ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
+                                       observer.objects},
+                        object, options, min_inside);
 }
 
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,

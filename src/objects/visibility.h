@@ -19,8 +19,8 @@ struct ImageKnowledge {
   std::span<const ObjectId> objects;      // one per detection
 };
 
-// The view of the location of an object in an image.
-enum class LocationView {
+// The observation of the location of an object in an image.
+enum class LocationVisibility {
   kOutside,  // the location is not in the image, or farther away than the object was ever seen
   kHidden,   // something nearer hides it
   kVisible,
@@ -30,19 +30,19 @@ enum class LocationView {
 // is. Whether something hides it is decided from the frame's depth grid or, without depth, from its
 // landmarks, and from the mapped objects that the frame shows. If none of these is known there, the
 // location counts as visible.
-LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                          const ObjectLandmark& object, const ObjectOptions& options,
-                          double min_inside = 1.0);
+LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                                  const ObjectLandmark& object, const ObjectOptions& options,
+                                  double min_inside = 1.0);
 
 // The same for the image of a keyframe.
-LocationView ViewLocation(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                          const ObjectLandmark& object, const ObjectOptions& options,
-                          double min_inside = 1.0);
+LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                                  const ObjectLandmark& object, const ObjectOptions& options,
+                                  double min_inside = 1.0);
 
 // Whether the depth of an image shows that the ellipsoid is not there: at least the share
 // `min_share` of the depth samples near its centre were measured behind it. False if there are too
-// few samples. Unlike ViewLocation this does not ask whether a detector would have found the object
-// so far away or cut by the border of the image.
+// few samples. Unlike FindVisibility this does not ask whether a detector would have found the
+// object so far away or cut by the border of the image.
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
                  const Ellipsoid& ellipsoid, double min_share);
 

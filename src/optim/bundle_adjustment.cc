@@ -61,45 +61,48 @@ class Bundle {
         weights.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
-    size_t views = 0;
+    size_t observations = 0;
     for (const LandmarkId id : window.landmarks) {
-      views += map.landmarks().At(id).observations.size();
+      observations += map.landmarks().At(id).observations.size();
     }
-    points_.Reserve(window.landmarks.size(), views);
+    points_.Reserve(window.landmarks.size(), observations);
     for (const LandmarkId id : window.landmarks) {
       AddPoint(map, sensor, map.landmarks().At(id), weights);
     }
   }
 
-  // Leaves out views without a residual at the start: their points are not in front of the camera.
+  // Leaves out observations without a residual at the start: their points are not in front of the
+  // camera.
   void ExcludeUndefined() {
-    ForEachView([](View& view, double chi2, size_t) { view.is_inlier = std::isfinite(chi2); });
+    ForEachObservation([](PointObservation& observation, double chi2, size_t) {
+      observation.is_inlier = std::isfinite(chi2);
+    });
   }
 
   // Makes the standard deviations of the keypoints as small as the errors show them to be
   // (MeasureKeypointPrecision).
   void MeasurePrecision() {
     std::vector<double> errors;
-    ForEachView([&](const View& view, double chi2, size_t) {
-      if (view.is_inlier) {
+    ForEachObservation([&](const PointObservation& observation, double chi2, size_t) {
+      if (observation.is_inlier) {
         errors.push_back(chi2);
       }
     });
     const double precision =
         internal::MeasureKeypointPrecision(std::move(errors), points_.size(), precision_);
     if (precision != precision_) {
-      ForEachView([&](View& view, double, size_t) {
-        view.measurement.inverse_sigma *= precision / precision_;
+      ForEachObservation([&](PointObservation& observation, double, size_t) {
+        observation.measurement.inverse_sigma *= precision / precision_;
       });
       precision_ = precision;
     }
   }
 
-  // Decides again which views are inliers.
+  // Decides again which observations are inliers.
   void Classify() {
     const double factor = internal::OutlierBoundFactor(precision_);
-    ForEachView([factor](View& view, double chi2, size_t) {
-      view.is_inlier = chi2 <= factor * OutlierBound(view.measurement);
+    ForEachObservation([factor](PointObservation& observation, double chi2, size_t) {
+      observation.is_inlier = chi2 <= factor * OutlierBound(observation.measurement);
     });
   }
 
@@ -117,17 +120,17 @@ class Bundle {
     for (size_t i = 0; i < points_.size(); ++i) {
       result.positions.emplace_back(window_.landmarks[i], points_.positions()[i]);
     }
-    ForEachView([&](const View& view, double, size_t point) {
-      if (!view.is_inlier) {
+    ForEachObservation([&](const PointObservation& observation, double, size_t point) {
+      if (!observation.is_inlier) {
         result.outliers.emplace_back(window_.landmarks[point],
-                                     pose_indices_.entries()[view.pose].first);
+                                     pose_indices_.entries()[observation.pose].first);
       }
     });
     objects_.Write(poses_, result);
   }
 
  private:
-  using View = internal::BundlePoints::View;
+  using PointObservation = internal::BundlePoints::PointObservation;
 
   void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
                 const std::vector<std::vector<double>>& weights) {
@@ -143,17 +146,17 @@ class Bundle {
     }
   }
 
-  // Calls visit(view, its PointChi2, index of its point).
+  // Calls visit(observation, its PointChi2, index of its point).
   template <typename Visitor>
-  void ForEachView(Visitor&& visit) {
+  void ForEachObservation(Visitor&& visit) {
     std::vector<Rigid3> cam_from_world;
     for (const PoseBlock& pose : poses_) {
       cam_from_world.push_back(FromBlock(pose.data()));
     }
     for (size_t i = 0; i < points_.size(); ++i) {
-      for (View& view : points_.ViewsOf(i)) {
-        const Eigen::Vector3d in_camera = cam_from_world[view.pose] * points_.positions()[i];
-        visit(view, PointChi2(camera_, view.measurement, in_camera), i);
+      for (PointObservation& observation : points_.ObservationsOf(i)) {
+        const Eigen::Vector3d in_camera = cam_from_world[observation.pose] * points_.positions()[i];
+        visit(observation, PointChi2(camera_, observation.measurement, in_camera), i);
       }
     }
   }
@@ -194,21 +197,21 @@ class Bundle {
     std::vector<std::unique_ptr<ceres::LossFunction>> weighted;
     ceres::Problem problem(ProblemOptions());
     for (size_t i = 0; i < points_.size(); ++i) {
-      for (const View& view : points_.ViewsOf(i)) {
-        if (view.is_inlier) {
+      for (const PointObservation& observation : points_.ObservationsOf(i)) {
+        if (observation.is_inlier) {
           ceres::LossFunction* loss = nullptr;
           if (point_loss == PointLoss::kHuber) {
-            loss = view.measurement.has_depth() ? &with_depth : &without_depth;
+            loss = observation.measurement.has_depth() ? &with_depth : &without_depth;
           } else if (point_loss == PointLoss::kCauchy) {
             loss = &cauchy;
           }
-          if (view.weight != 1.0) {
-            weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, view.weight,
+          if (observation.weight != 1.0) {
+            weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, observation.weight,
                                                                    ceres::DO_NOT_TAKE_OWNERSHIP));
             loss = weighted.back().get();
           }
-          costs.push_back(MakeCost(camera_, view.measurement));
-          problem.AddResidualBlock(costs.back().get(), loss, poses_[view.pose].data(),
+          costs.push_back(MakeCost(camera_, observation.measurement));
+          problem.AddResidualBlock(costs.back().get(), loss, poses_[observation.pose].data(),
                                    points_.positions()[i].data());
         }
       }
@@ -249,7 +252,7 @@ class Bundle {
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
     solver.callbacks.push_back(&supervision);
-    internal::UndefinedViewStop stop(objects_);
+    internal::UndefinedObservationStop stop(objects_);
     solver.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     do {
@@ -258,7 +261,7 @@ class Bundle {
       result.iterations += evaluations;
       solver.max_num_iterations -= evaluations - 1;
     } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
-             objects_.LeaveOutUndefinedViews());
+             objects_.LeaveOutUndefinedObservations());
     result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
     if (!summary.IsSolutionUsable()) {
       spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",

@@ -17,9 +17,9 @@ namespace hullslam {
 // code eliminates the landmarks (EliminatedPoints). In a large window Ceres eliminates them, and
 // after each step it moves the objects alone until they fit the new poses. Each object of the
 // window adds the constraints of its detections (MakeObjectConstraint) and a prior at its initial
-// shape (MakeObjectPrior). A view in which the object reaches the plane of the camera is left out.
-// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
-// failed.
+// shape (MakeObjectPrior). An observation in which the object reaches the plane of the camera is
+// left out. If the solver fails, the adjustment is repeated without objects, and all objects are
+// reported as failed.
 //
 // A monocular sensor differs in five points: the options are those of ForMonocular(); the standard
 // deviations of keypoints are reduced to those that the errors show (MeasureKeypointPrecision);

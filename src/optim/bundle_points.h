@@ -23,49 +23,51 @@ struct FollowOptions {
 // The points of a bundle adjustment and their measurements in its images.
 class BundlePoints {
  public:
-  struct View {
+  struct PointObservation {
     PointMeasurement measurement;
     size_t pose = 0;      // index of the pose
     double weight = 1.0;  // weight of its cost
     bool is_inlier = true;
   };
 
-  void Reserve(size_t points, size_t views) {
+  void Reserve(size_t points, size_t observations) {
     positions_.reserve(points);
     ends_.reserve(points);
-    views_.reserve(views);
+    observations_.reserve(observations);
   }
 
-  // `position`: m, world frame. The views of the point are added next.
+  // `position`: m, world frame. The observations of the point are added next.
   void AddPoint(const Eigen::Vector3d& position) {
     positions_.push_back(position);
-    ends_.push_back(views_.size());
+    ends_.push_back(observations_.size());
   }
-  // Adds a view of the point that was added last.
+  // Adds an observation of the point that was added last.
   void AddView(const PointMeasurement& measurement, size_t pose, double weight = 1.0) {
-    views_.push_back({measurement, pose, weight, true});
-    ends_.back() = views_.size();
+    observations_.push_back({measurement, pose, weight, true});
+    ends_.back() = observations_.size();
   }
 
   size_t size() const { return positions_.size(); }
   std::vector<Eigen::Vector3d>& positions() { return positions_; }
   const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
-  std::span<View> ViewsOf(size_t point) {
-    return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
+  std::span<PointObservation> ObservationsOf(size_t point) {
+    return std::span(observations_).subspan(Begin(point), ends_[point] - Begin(point));
   }
-  std::span<const View> ViewsOf(size_t point) const {
-    return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
+  std::span<const PointObservation> ObservationsOf(size_t point) const {
+    return std::span(observations_).subspan(Begin(point), ends_[point] - Begin(point));
   }
   int CountInliers() const {
-    return static_cast<int>(std::count_if(views_.begin(), views_.end(),
-                                          [](const View& view) { return view.is_inlier; }));
+    return static_cast<int>(
+        std::count_if(observations_.begin(), observations_.end(),
+                      [](const PointObservation& observation) { return observation.is_inlier; }));
   }
 
  private:
   size_t Begin(size_t point) const { return point == 0 ? 0 : ends_[point - 1]; }
 
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<View> views_;  // those of the first point, then those of the second, and so on
+  std::vector<PointObservation>
+      observations_;  // those of the first point, then those of the second, and so on
   std::vector<size_t> ends_;
 };
 

@@ -22,7 +22,7 @@ struct BundleResult {
   // be checked.
   std::vector<ObjectId> failed_objects;
   bool is_usable = false;  // false if the solver failed; then there is no result to apply
-  int residuals = 0;       // number of inlier views of landmarks and of costs on objects
+  int residuals = 0;       // number of inlier observations of landmarks and of costs on objects
   int iterations = 0;
 };
 

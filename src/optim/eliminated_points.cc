@@ -42,36 +42,39 @@ EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& po
       moved_(points.positions()),
       damping_(points.size(), kLeastDamping) {}
 
-double EliminatedPoints::Loss(double chi2, const BundlePoints::View& view) const {
+double EliminatedPoints::Loss(double chi2,
+                              const BundlePoints::PointObservation& observation) const {
   switch (loss_) {
     case PointLoss::kNone:
       break;
     case PointLoss::kHuber:
-      return 0.5 * view.weight * HuberCost(chi2, OutlierBound(view.measurement));
+      return 0.5 * observation.weight * HuberCost(chi2, OutlierBound(observation.measurement));
     case PointLoss::kCauchy:
-      return 0.5 * view.weight * CauchyCost(chi2, kCauchyScale);
+      return 0.5 * observation.weight * CauchyCost(chi2, kCauchyScale);
   }
-  return 0.5 * view.weight * chi2;
+  return 0.5 * observation.weight * chi2;
 }
 
-double EliminatedPoints::WeightOf(double chi2, const BundlePoints::View& view) const {
+double EliminatedPoints::WeightOf(double chi2,
+                                  const BundlePoints::PointObservation& observation) const {
   switch (loss_) {
     case PointLoss::kNone:
       break;
     case PointLoss::kHuber:
-      return view.weight * HuberWeight(chi2, OutlierBound(view.measurement));
+      return observation.weight * HuberWeight(chi2, OutlierBound(observation.measurement));
     case PointLoss::kCauchy:
-      return view.weight * CauchyWeight(chi2, kCauchyScale);
+      return observation.weight * CauchyWeight(chi2, kCauchyScale);
   }
-  return view.weight;
+  return observation.weight;
 }
 
 double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
   double cost = 0.0;
-  for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
-    if (view.is_inlier) {
-      const Eigen::Vector3d in_camera = poses_[view.pose] * position;
-      cost += Loss(PointChi2(camera_, view.measurement, in_camera), view);
+  for (const BundlePoints::PointObservation& observation :
+       std::as_const(points_).ObservationsOf(point)) {
+    if (observation.is_inlier) {
+      const Eigen::Vector3d in_camera = poses_[observation.pose] * position;
+      cost += Loss(PointChi2(camera_, observation.measurement, in_camera), observation);
     }
   }
   return cost;
@@ -80,19 +83,21 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
 EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
                                                          const Eigen::Vector3d& position) const {
   PointSystem sum;
-  for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
-    if (!view.is_inlier) {
+  for (const BundlePoints::PointObservation& observation :
+       std::as_const(points_).ObservationsOf(point)) {
+    if (!observation.is_inlier) {
       continue;
     }
-    const Eigen::Vector3d in_camera = poses_[view.pose] * position;
+    const Eigen::Vector3d in_camera = poses_[observation.pose] * position;
     if (in_camera.z() < kMinDepth) {
       sum.cost = kInfinite;
       return sum;
     }
-    const PointLinearization linear(camera_, view.measurement, in_camera);
+    const PointLinearization linear(camera_, observation.measurement, in_camera);
     const double chi2 = linear.residual.squaredNorm();
-    sum.cost += Loss(chi2, view);
-    sum.Add(WeightOf(chi2, view), linear.residual, linear.Times(poses_[view.pose].rotation));
+    sum.cost += Loss(chi2, observation);
+    sum.Add(WeightOf(chi2, observation), linear.residual,
+            linear.Times(poses_[observation.pose].rotation));
   }
   return sum;
 }
@@ -139,24 +144,24 @@ double EliminatedPoints::Follow(std::span<const Rigid3> poses) {
 void EliminatedPoints::Accept() { points_.positions() = moved_; }
 
 // A step (w, v) of a pose moves a point x of the camera frame by -[x]_x w + v.
-void EliminatedPoints::AddView(const BundlePoints::View& view, const Eigen::Vector3d& position,
-                               PointSystem& point, Eigen::MatrixXd& hessian,
-                               Eigen::VectorXd& gradient) {
-  const MatrixPose& pose = poses_[view.pose];
+void EliminatedPoints::AddView(const BundlePoints::PointObservation& observation,
+                               const Eigen::Vector3d& position, PointSystem& point,
+                               Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+  const MatrixPose& pose = poses_[observation.pose];
   const Eigen::Vector3d in_camera = pose * position;
   if (in_camera.z() < kMinDepth) {
     return;
   }
-  const PointLinearization linear(camera_, view.measurement, in_camera);
-  const double weight = WeightOf(linear.residual.squaredNorm(), view);
+  const PointLinearization linear(camera_, observation.measurement, in_camera);
+  const double weight = WeightOf(linear.residual.squaredNorm(), observation);
   point.Add(weight, linear.residual, linear.Times(pose.rotation));
-  if (view.pose >= moving_) {
+  if (observation.pose >= moving_) {
     return;
   }
   const Eigen::Matrix3d by_camera_point = weight * linear.Hessian();
   const Eigen::Vector3d slope = weight * linear.Gradient();
   const Eigen::Matrix3d by_rotation = -by_camera_point.colwise().cross(in_camera);  // [x]_x H
-  const Eigen::Index at = 6 * static_cast<Eigen::Index>(view.pose);
+  const Eigen::Index at = 6 * static_cast<Eigen::Index>(observation.pose);
   hessian.block<3, 3>(at, at) -= by_rotation.rowwise().cross(in_camera.transpose());
   hessian.block<3, 3>(at + 3, at) += by_rotation.transpose();
   hessian.block<3, 3>(at + 3, at + 3) += by_camera_point;
@@ -189,9 +194,10 @@ void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& grad
   for (size_t i = 0; i < points_.size(); ++i) {
     PointSystem point;
     couplings_.clear();
-    for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(i)) {
-      if (view.is_inlier) {
-        AddView(view, points_.positions()[i], point, hessian, gradient);
+    for (const BundlePoints::PointObservation& observation :
+         std::as_const(points_).ObservationsOf(i)) {
+      if (observation.is_inlier) {
+        AddView(observation, points_.positions()[i], point, hessian, gradient);
       }
     }
     Eliminate(point, damping_[i], hessian, gradient);

@@ -15,7 +15,7 @@
 namespace hullslam::internal {
 
 // Eliminates the points from a bundle adjustment. The cost is
-//   F(p, x) = sum over inlier views (j, i) of weight / 2 rho(|PointResidual(p_j x_i)|^2)
+//   F(p, x) = sum over inlier observations (j, i) of weight / 2 rho(|PointResidual(p_j x_i)|^2)
 // for poses p_j and points x_i, where rho is the loss (PointLoss). For given poses, the best
 // position x_i*(p) of each point does not depend on the other points. So f(p) = F(p, x*(p)) is a
 // function of the poses alone. This class evaluates f and its Gauss-Newton approximation.
@@ -53,8 +53,8 @@ class EliminatedPoints {
  private:
   // The cost of one point and its derivatives by the point.
   struct PointSystem {
-    // Adds weight / 2 times the squared norm of a view's residual, whose derivative by the point is
-    // `jacobian`. Only the lower half of the Hessian is computed.
+    // Adds weight / 2 times the squared norm of an observation's residual, whose derivative by the
+    // point is `jacobian`. Only the lower half of the Hessian is computed.
     void Add(double weight, const Eigen::Vector3d& residual, const Eigen::Matrix3d& jacobian) {
       const Eigen::Matrix3d weighted = weight * jacobian;
       for (int column = 0; column < 3; ++column) {
@@ -69,20 +69,20 @@ class EliminatedPoints {
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  // lower half
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   };
-  // Second derivative of the cost of a view, by the pose and the point.
+  // Second derivative of the cost of an observation, by the pose and the point.
   struct Coupling {
     Eigen::Index pose = 0;  // row of its first parameter
     Eigen::Matrix<double, 6, 3> block;
   };
 
   // Half of rho, and its derivative by half of the squared residual.
-  double Loss(double chi2, const BundlePoints::View& view) const;
+  double Loss(double chi2, const BundlePoints::PointObservation& observation) const;
   double CostOf(size_t point, const Eigen::Vector3d& position) const;
-  double WeightOf(double chi2, const BundlePoints::View& view) const;
+  double WeightOf(double chi2, const BundlePoints::PointObservation& observation) const;
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;
-  void AddView(const BundlePoints::View& view, const Eigen::Vector3d& position, PointSystem& point,
-               Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
+  void AddView(const BundlePoints::PointObservation& observation, const Eigen::Vector3d& position,
+               PointSystem& point, Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
   void Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,
                  Eigen::VectorXd& gradient) const;
 

@@ -19,6 +19,7 @@ struct PoseObject {
   const Detection* detection = nullptr;  // must outlive the call
   std::vector<SilhouetteLine> lines;  // lines of the detection, possibly after misfit compensation
   double misfit_px = 0.0;             // the remaining misfit of these lines
+  std::vector<SilhouetteLine> right_lines = {};  // the same of the right image
 };
 
 struct JointPoseOptions {

@@ -73,12 +73,13 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
                            const size_t* pose) {
   const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
   const Detection& detection = keyframe.frame->detections[seen.detection];
-  const ObjectView view{seen.keyframe, keyframe.cam_from_world, &detection};
+  const ResolvedObservation observation{seen.keyframe, keyframe.cam_from_world, &detection};
   const PoseBlock camera = ToBlock(keyframe.cam_from_world);
   Object& object = objects_.back();
   object.has_depth |= !detection.points.empty();
-  ObjectConstraint constraint = MakeObjectConstraint(camera_, view, detection.lines, object.before,
-                                                     misfit_px, options_.constraint);
+  ObjectConstraint constraint =
+      MakeObjectConstraint(camera_, observation, detection.lines, object.before, misfit_px,
+                           options_.constraint, detection.right_lines);
   auto moving_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kMoving);
   for (auto* const cost : {&constraint.silhouette, &constraint.depth}) {
     if (*cost == nullptr || !IsDefined(**cost, camera, object.pose, object.log_axes)) {
@@ -91,7 +92,7 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
     }
   }
   if (moving_part->size() > 0) {
-    views_.push_back({objects_.size() - 1, *pose, std::move(moving_part)});
+    observations_.push_back({objects_.size() - 1, *pose, std::move(moving_part)});
   }
 }
 
@@ -100,8 +101,8 @@ size_t ObjectBundle::CountCosts() const {
   for (const Object& object : objects_) {
     count += object.fixed_part->size();
   }
-  for (const View& view : views_) {
-    count += view.cost->size();
+  for (const Observation& observation : observations_) {
+    count += observation.cost->size();
   }
   return count;
 }
@@ -111,10 +112,10 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
     problem.AddResidualBlock(object.fixed_part.get(), nullptr, object.pose.data(),
                              object.log_axes.data());
   }
-  for (View& view : views_) {
-    Object& object = objects_[view.object];
-    problem.AddResidualBlock(view.cost.get(), nullptr, poses[view.pose].data(), object.pose.data(),
-                             object.log_axes.data());
+  for (Observation& observation : observations_) {
+    Object& object = objects_[observation.object];
+    problem.AddResidualBlock(observation.cost.get(), nullptr, poses[observation.pose].data(),
+                             object.pose.data(), object.log_axes.data());
   }
 }
 
@@ -139,15 +140,16 @@ std::shared_ptr<ceres::ParameterBlockOrdering> ObjectBundle::OrderAlone() {
   return ordering;
 }
 
-bool ObjectBundle::HasUndefinedView() const {
+bool ObjectBundle::HasUndefinedObservation() const {
   return std::any_of(objects_.begin(), objects_.end(),
                      [](const Object& object) { return object.fixed_part->HasUndefined(); }) ||
-         std::any_of(views_.begin(), views_.end(),
-                     [](const View& view) { return view.cost->HasUndefined(); });
+         std::any_of(
+             observations_.begin(), observations_.end(),
+             [](const Observation& observation) { return observation.cost->HasUndefined(); });
 }
 
-bool ObjectBundle::LeaveOutUndefinedViews() {
-  const bool has_undefined = HasUndefinedView();
+bool ObjectBundle::LeaveOutUndefinedObservations() {
+  const bool has_undefined = HasUndefinedObservation();
   const auto leave_out = [](ObjectSumCost& sum) {
     if (sum.HasUndefined()) {
       sum.LeaveOutUndefined();
@@ -156,8 +158,8 @@ bool ObjectBundle::LeaveOutUndefinedViews() {
   for (Object& object : objects_) {
     leave_out(*object.fixed_part);
   }
-  for (View& view : views_) {
-    leave_out(*view.cost);
+  for (Observation& observation : observations_) {
+    leave_out(*observation.cost);
   }
   return has_undefined;
 }
@@ -166,10 +168,12 @@ bool ObjectBundle::IsDefinedEverywhere(size_t index, const std::vector<PoseBlock
   const Object& object = objects_[index];
   const double* parameters[] = {nullptr, object.pose.data(), object.log_axes.data()};
   return object.fixed_part->AreLeftOutDefined(parameters + 1) &&
-         std::all_of(views_.begin(), views_.end(), [&](const View& view) {
-           parameters[0] = poses[view.pose].data();
-           return view.object != index || view.cost->AreLeftOutDefined(parameters);
-         });
+         std::all_of(observations_.begin(), observations_.end(),
+                     [&](const Observation& observation) {
+                       parameters[0] = poses[observation.pose].data();
+                       return observation.object != index ||
+                              observation.cost->AreLeftOutDefined(parameters);
+                     });
 }
 
 void ObjectBundle::Write(const std::vector<PoseBlock>& poses, BundleResult& result) const {

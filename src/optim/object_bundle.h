@@ -44,15 +44,16 @@ class ObjectBundle {
   // The order of a step in which only the objects move: first their poses, then their half axes.
   std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
 
-  // Returns whether a view was undefined at the last evaluation. A quadric that reaches the plane
-  // of a camera has no projected ellipse there, so the cost of this view is undefined, and Ceres
-  // rejects the step. One object beside one camera would then hold the whole map, so such a view
-  // has to be left out.
-  bool HasUndefinedView() const;
-  // Leaves the undefined views out. Returns whether there were any.
-  bool LeaveOutUndefinedViews();
+  // Returns whether an observation was undefined at the last evaluation. A quadric that reaches the
+  // plane of a camera has no projected ellipse there, so the cost of this observation is undefined,
+  // and Ceres rejects the step. One object beside one camera would then hold the whole map, so such
+  // an observation has to be left out.
+  bool HasUndefinedObservation() const;
+  // Leaves the undefined observations out. Returns whether there were any.
+  bool LeaveOutUndefinedObservations();
 
-  // Writes the quadrics. An object fails if it is not in front of a camera whose view was left out.
+  // Writes the quadrics. An object fails if it is not in front of a camera whose observation was
+  // left out.
   void Write(const std::vector<PoseBlock>& poses, BundleResult& result) const;
 
  private:
@@ -61,12 +62,12 @@ class ObjectBundle {
     Ellipsoid before;
     PoseBlock pose{};  // world_from_object
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
-    bool has_depth = false;  // whether a view has depth points on it
-    // The prior and the views from keyframes that do not move.
+    bool has_depth = false;  // whether an observation has depth points on it
+    // The prior and the observations from keyframes that do not move.
     std::unique_ptr<ObjectSumCost> fixed_part;
   };
   // The silhouette and the depth points of one detection in a moving keyframe.
-  struct View {
+  struct Observation {
     size_t object = 0;
     size_t pose = 0;  // index into the window's poses
     std::unique_ptr<ObjectSumCost> cost;
@@ -81,17 +82,17 @@ class ObjectBundle {
   ObjectBundleOptions options_;
   size_t moving_poses_;
   std::vector<Object> objects_;
-  std::vector<View> views_;
+  std::vector<Observation> observations_;
 };
 
-// Ends the solution when a view of an object becomes undefined.
-class UndefinedViewStop final : public ceres::IterationCallback {
+// Ends the solution when an observation of an object becomes undefined.
+class UndefinedObservationStop final : public ceres::IterationCallback {
  public:
-  explicit UndefinedViewStop(const ObjectBundle& objects) : objects_(objects) {}
+  explicit UndefinedObservationStop(const ObjectBundle& objects) : objects_(objects) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return objects_.HasUndefinedView() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                       : ceres::SOLVER_CONTINUE;
+    return objects_.HasUndefinedObservation() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                              : ceres::SOLVER_CONTINUE;
   }
 
  private:

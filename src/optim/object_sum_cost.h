@@ -13,7 +13,7 @@
 namespace hullslam::internal {
 
 // The sum of several costs on one object, as one cost with few residuals. Ceres sees 16 residuals
-// per moving view, whatever the number of lines.
+// per moving observation, whatever the number of lines.
 //
 // Let the costs have the residuals r_1 ... r_n and the Jacobians J_1 ... J_n with respect to the
 // same parameters: the six of the camera's pose, if it moves, and the nine of the object. The sum
@@ -26,9 +26,9 @@ namespace hullslam::internal {
 // residual with zero derivative,
 //   sqrt(sum_k |r_k|^2 - |r|^2),
 // makes half of the squared norm of all residuals equal to F. So Ceres takes the same steps and
-// sees the same cost as with the single residuals, but multiplies much smaller matrices. A view
-// with a moving camera has 6 + 9 + 1 = 16 residuals. The prior and all views from fixed cameras are
-// one cost with 9 + 1 = 10 residuals.
+// sees the same cost as with the single residuals, but multiplies much smaller matrices. An
+// observation with a moving camera has 6 + 9 + 1 = 16 residuals. The prior and all observations
+// from fixed cameras are one cost with 9 + 1 = 10 residuals.
 class ObjectSumCost final : public ceres::CostFunction {
  public:
   // The camera that the cost depends on besides the object, if any.

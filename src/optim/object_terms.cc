@@ -14,10 +14,10 @@ ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
   int most_rows = 0;
   for (size_t i = 0; i < objects.size(); ++i) {
     const PoseObject& object = objects[i];
-    const ObjectView view{KeyframeId(), start, object.detection};
+    const ResolvedObservation observation{KeyframeId(), start, object.detection};
     Term& term = terms_[i];
-    term.cost = MakeObjectConstraint(camera, view, object.lines, object.ellipsoid, object.misfit_px,
-                                     options.constraint)
+    term.cost = MakeObjectConstraint(camera, observation, object.lines, object.ellipsoid,
+                                     object.misfit_px, options.constraint, object.right_lines)
                     .silhouette;
     if (term.cost == nullptr) {
       continue;

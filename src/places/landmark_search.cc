@@ -28,7 +28,8 @@ std::vector<FoundLandmark> FindLandmarks(const Map& map, const Sensor& sensor, c
   std::vector<Eigen::Vector3d> points_in_cam;
   for (const LandmarkId id : landmarks) {
     const Landmark& landmark = map.landmarks().At(id);
-    const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
+    const std::optional<LandmarkProjection> view =
+        ProjectLandmark(sensor, cam_from_world, landmark);
     if (!view) {
       continue;
     }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/finished_run.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -14,6 +17,7 @@
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
 #include "results/scene_file.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -69,6 +73,23 @@ SequenceOfRun ReadSequence(const JsonNode& provenance, const std::string& progra
   return sequence;
 }
 
+// The poses of the rectified camera, from those of the camera as read.
+Trajectory OfRectified(const SequenceOfRun& sequence, Trajectory as_read) {
+  const auto choice = sequence.choices.find("rectified_from_left");
+  if (choice == sequence.choices.end()) {
+    return as_read;
+  }
+  std::istringstream text(choice->second);
+  Eigen::Quaterniond q;
+  if (!(text >> q.x() >> q.y() >> q.z() >> q.w()) || !(q.norm() > 0.0)) {
+    throw InputError(
+        fmt::format("rectified_from_left in summary.json is '{}', expected a rotation x y z w",
+                    ShowText(choice->second)));
+  }
+  return OfOtherCamera(std::move(as_read),
+                       Inverse(Rigid3(q.normalized(), Eigen::Vector3d::Zero())));
+}
+
 }  // namespace
 
 bool FinishedRun::Has(const std::string& name) const {
@@ -95,17 +116,21 @@ std::optional<fs::path> FinishedRun::Find(const std::string& path) const {
   return std::nullopt;
 }
 
-Trajectory FinishedRun::ReadPoses() const { return ReadTrajectory(folder / "trajectory.txt"); }
+Trajectory FinishedRun::ReadPoses() const { return OfRectified(sequence, ReadPosesAsRead()); }
+
+Trajectory FinishedRun::ReadPosesAsRead() const {
+  return ReadTrajectory(folder / "trajectory.txt");
+}
 
 Trajectory FinishedRun::ReadKeyframePoses() const {
-  return ReadKeyframes(folder / "keyframes.txt");
+  return OfRectified(sequence, ReadKeyframes(folder / "keyframes.txt"));
 }
 
 std::optional<PlyPoints> FinishedRun::ReadLandmarkPoints() const {
   return Has("map.ply") ? std::optional(ReadMapLandmarks(folder / "map.ply")) : std::nullopt;
 }
 
-std::optional<ObjectReport> FinishedRun::ReadObjectReport() const {
+std::optional<ObjectResults> FinishedRun::ReadObjectResults() const {
   return Has("objects.json") ? std::optional(ReadObjects(folder / "objects.json")) : std::nullopt;
 }
 
@@ -114,8 +139,9 @@ std::optional<Scene> FinishedRun::ReadSceneGraph() const {
 }
 
 std::optional<Trajectory> FinishedRun::ReadConvertedGroundtruth() const {
-  return Has("groundtruth.txt") ? std::optional(ReadTrajectory(folder / "groundtruth.txt"))
-                                : std::nullopt;
+  return Has("groundtruth.txt")
+             ? std::optional(OfRectified(sequence, ReadTrajectory(folder / "groundtruth.txt")))
+             : std::nullopt;
 }
 
 FinishedRun OpenFinishedRun(const fs::path& folder) {

@@ -11,7 +11,7 @@
 
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/ply_points.h"
 #include "scene/scene.h"
 
@@ -49,11 +49,14 @@ struct FinishedRun {
   // it. Absent if it is not found there, or if `path` is empty.
   std::optional<std::filesystem::path> Find(const std::string& path) const;
 
+  // The poses of the camera whose images OpenRunSequence() gives. Those in the files are of the
+  // camera as read, if the run has rectified the images.
   Trajectory ReadPoses() const;          // of all tracked frames
+  Trajectory ReadPosesAsRead() const;    // the same as they are in the file
   Trajectory ReadKeyframePoses() const;  // of all sessions
   // The landmarks of map.ply. Absent, like the others, if the run has no such file.
   std::optional<PlyPoints> ReadLandmarkPoints() const;
-  std::optional<ObjectReport> ReadObjectReport() const;
+  std::optional<ObjectResults> ReadObjectResults() const;
   std::optional<Scene> ReadSceneGraph() const;
   // The ground truth that the run has converted, so that it has the stamps and axes of its poses.
   std::optional<Trajectory> ReadConvertedGroundtruth() const;

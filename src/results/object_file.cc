@@ -87,22 +87,22 @@ Json ToJson(const PinholeCamera& camera) {
   return json;
 }
 
-Json ToJson(ObjectId object, const ReportedView& view) {
+Json ToJson(ObjectId object, const ObservationResult& observation) {
   return {{"object", object.value},
-          {"keyframe", view.keyframe.value},
-          {"timestamp", Rounded(view.timestamp, kMetre)},
-          {"cam_from_world", PoseJson(view.cam_from_world)},
-          {"class", view.label},
-          {"score", Rounded(view.score, kMetre)},
-          {"cut", view.is_cut},
-          {"box", view.is_box},
-          {"hull", PointsJson(view.hull)},
-          {"contour", PointsJson(view.contour)},
-          {"lines", LinesJson(view.lines)}};
+          {"keyframe", observation.keyframe.value},
+          {"timestamp", Rounded(observation.timestamp, kMetre)},
+          {"cam_from_world", PoseJson(observation.cam_from_world)},
+          {"class", observation.label},
+          {"score", Rounded(observation.score, kMetre)},
+          {"cut", observation.is_cut},
+          {"box", observation.is_box},
+          {"hull", PointsJson(observation.hull)},
+          {"contour", PointsJson(observation.contour)},
+          {"lines", LinesJson(observation.lines)}};
 }
 
-// Everything about an object except its views.
-Json ToJson(const ReportedObject& object) {
+// Everything about an object except its observations.
+Json ToJson(const ObjectResult& object) {
   Json votes = Json::object();
   for (const auto& [label, score] : object.votes) {
     votes[label] = Rounded(score, kMetre);
@@ -123,7 +123,7 @@ Json ToJson(const ReportedObject& object) {
           {"misfit_px", Rounded(object.misfit_px, kMetre)},
           {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
           {"quality", Rounded(QualityOf(object), kAngle)},
-          {"observations", object.views.size()}};
+          {"observations", object.observations.size()}};
 }
 
 Json ToJson(const std::optional<LocatedObject>& located) {
@@ -180,36 +180,36 @@ std::string CsvNumber(const std::optional<double>& value) {
 
 }  // namespace
 
-std::string FormatObjects(const ObjectReport& report) {
+std::string FormatObjects(const ObjectResults& report) {
   const Json head = {{"version", kObjectFileVersion},
                      {"sequence", report.sequence},
                      {"camera", ToJson(report.camera)},
                      {"candidates", report.candidates},
                      {"changes", ToJson(report.changes)}};
   std::vector<std::string> objects;
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     objects.push_back(DumpLine(ToJson(object)));
   }
   return WithEntries(head, "objects", objects);
 }
 
-std::string FormatObservations(const ObjectReport& report) {
-  std::vector<std::string> views;
-  for (const ReportedObject& object : report.objects) {
-    for (const ReportedView& view : object.views) {
-      views.push_back(DumpLine(ToJson(object.id, view)));
+std::string FormatObservations(const ObjectResults& report) {
+  std::vector<std::string> observations;
+  for (const ObjectResult& object : report.objects) {
+    for (const ObservationResult& observation : object.observations) {
+      observations.push_back(DumpLine(ToJson(object.id, observation)));
     }
   }
-  return WithEntries({{"version", kObjectFileVersion}}, "observations", views);
+  return WithEntries({{"version", kObjectFileVersion}}, "observations", observations);
 }
 
-std::string FormatObjectsCsv(const ObjectReport& report) {
+std::string FormatObjectsCsv(const ObjectResults& report) {
   std::string text =
       "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
       "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n";
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     text += fmt::format("{},{},{},{}", object.id.value, CsvField(object.label),
-                        ToString(object.state), object.views.size());
+                        ToString(object.state), object.observations.size());
     const Rigid3& pose = object.ellipsoid.world_from_object;
     for (const auto& values :
          {Eigen::VectorXd(pose.translation), Eigen::VectorXd(pose.rotation.coeffs()),
@@ -229,7 +229,7 @@ std::string FormatObjectsCsv(const ObjectReport& report) {
   return text;
 }
 
-std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene) {
+std::vector<FileContent> ObjectFiles(const ObjectResults& report, const Scene& scene) {
   return {{"objects.json", FormatObjects(report)},
           {"objects_observations.json", FormatObservations(report)},
           {"objects.csv", FormatObjectsCsv(report)},

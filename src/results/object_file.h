@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/output_folder.h"
 #include "scene/scene.h"
 
@@ -16,22 +16,22 @@ namespace hullslam {
 // All functions throw CheckError for values that are not finite.
 
 // The text of `objects.json`: the camera and the objects, without their observations.
-std::string FormatObjects(const ObjectReport& report);
+std::string FormatObjects(const ObjectResults& report);
 // The text of `objects_observations.json`: the observations of all objects.
-std::string FormatObservations(const ObjectReport& report);
+std::string FormatObservations(const ObjectResults& report);
 // The text of `objects.csv`: a table with one line per object.
-std::string FormatObjectsCsv(const ObjectReport& report);
+std::string FormatObjectsCsv(const ObjectResults& report);
 
 // Reads `objects.json`, whose path this is, and `objects_observations.json` from the same folder.
 // Throws InputError, with the name of the file and the path of the key, if a file does not have the
 // format of FormatObjects() and FormatObservations(), or if the two files are from different runs.
-ObjectReport ReadObjects(const std::filesystem::path& path);
+ObjectResults ReadObjects(const std::filesystem::path& path);
 // The same with the path of the file of observations. Both may be the same file.
-ObjectReport ReadObjects(const std::filesystem::path& path,
-                         const std::filesystem::path& observations);
+ObjectResults ReadObjects(const std::filesystem::path& path,
+                          const std::filesystem::path& observations);
 
 // objects.json, objects_observations.json, objects.csv, objects.ply and scene.json, so that they
 // can be written together with the other files of a run.
-std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene);
+std::vector<FileContent> ObjectFiles(const ObjectResults& report, const Scene& scene);
 
 }  // namespace hullslam

@@ -75,22 +75,22 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
   return lines;
 }
 
-ReportedView ReadView(const JsonNode& node) {
-  ReportedView view;
-  view.keyframe = KeyframeId(node.At("keyframe").Count());
-  view.timestamp = node.At("timestamp").Number(kMostSeconds);
-  view.cam_from_world = PoseOf(node.At("cam_from_world"));
-  view.label = node.At("class").Text();
-  view.score = node.At("score").Number(1.0);
-  view.is_cut = node.At("cut").Flag();
-  view.is_box = node.At("box").Flag();
-  view.hull = node.At("hull").Points();
-  if (view.hull.size() < 3 || !(SignedArea(view.hull) > 0.0)) {
+ObservationResult ReadObservation(const JsonNode& node) {
+  ObservationResult observation;
+  observation.keyframe = KeyframeId(node.At("keyframe").Count());
+  observation.timestamp = node.At("timestamp").Number(kMostSeconds);
+  observation.cam_from_world = PoseOf(node.At("cam_from_world"));
+  observation.label = node.At("class").Text();
+  observation.score = node.At("score").Number(1.0);
+  observation.is_cut = node.At("cut").Flag();
+  observation.is_box = node.At("box").Flag();
+  observation.hull = node.At("hull").Points();
+  if (observation.hull.size() < 3 || !(SignedArea(observation.hull) > 0.0)) {
     node.At("hull").Fail("three corners or more in the order of positive area");
   }
-  view.contour = node.At("contour").Points();
-  view.lines = ReadLines(node.At("lines"));
-  return view;
+  observation.contour = node.At("contour").Points();
+  observation.lines = ReadLines(node.At("lines"));
+  return observation;
 }
 
 ObjectState ReadState(const JsonNode& node) {
@@ -114,8 +114,8 @@ std::optional<double> ReadOptional(const JsonNode& node, const char* key, double
   return node.Has(key) ? std::optional(node.At(key).Number(most)) : std::nullopt;
 }
 
-ReportedObject ReadObject(const JsonNode& node) {
-  ReportedObject object;
+ObjectResult ReadObject(const JsonNode& node) {
+  ObjectResult object;
   object.id = ObjectId(node.At("id").Count());
   object.state = ReadState(node.At("state"));
   object.label = node.At("class").Text();
@@ -175,40 +175,40 @@ void CheckVersion(const JsonNode& top) {
 
 // Adds the observations to their objects, which must have `counts` observations.
 void ReadObservations(const std::filesystem::path& path, const std::vector<uint32_t>& counts,
-                      ObjectReport& report) {
+                      ObjectResults& report) {
   const nlohmann::json json = ReadJson(path);
   const JsonNode top(path, json);
   CheckVersion(top);
-  std::map<uint32_t, ReportedObject*> objects;
-  for (ReportedObject& object : report.objects) {
+  std::map<uint32_t, ObjectResult*> objects;
+  for (ObjectResult& object : report.objects) {
     objects[object.id.value] = &object;
   }
-  for (const JsonNode& view : top.At("observations").Elements()) {
-    const auto object = objects.find(view.At("object").Count());
+  for (const JsonNode& observation : top.At("observations").Elements()) {
+    const auto object = objects.find(observation.At("object").Count());
     if (object == objects.end()) {
-      view.At("object").Fail("the id of an object in objects.json");
+      observation.At("object").Fail("the id of an object in objects.json");
     }
-    object->second->views.push_back(ReadView(view));
+    object->second->observations.push_back(ReadObservation(observation));
   }
   for (size_t i = 0; i < counts.size(); ++i) {
-    const ReportedObject& object = report.objects[i];
-    if (object.views.size() != counts[i]) {
+    const ObjectResult& object = report.objects[i];
+    if (object.observations.size() != counts[i]) {
       throw InputError(fmt::format(
           "{}: has {} observations of object {}, expected {} as in objects.json; both files must "
           "be of the same run",
-          path.string(), object.views.size(), object.id.value, counts[i]));
+          path.string(), object.observations.size(), object.id.value, counts[i]));
     }
   }
 }
 
 }  // namespace
 
-ObjectReport ReadObjects(const std::filesystem::path& path,
-                         const std::filesystem::path& observations) {
+ObjectResults ReadObjects(const std::filesystem::path& path,
+                          const std::filesystem::path& observations) {
   const nlohmann::json json = ReadJson(path);
   const JsonNode top(path, json);
   CheckVersion(top);
-  ObjectReport report;
+  ObjectResults report;
   report.sequence = top.At("sequence").Text();
   report.camera = ReadCamera(top.At("camera"));
   report.candidates = top.At("candidates").Count();
@@ -222,7 +222,7 @@ ObjectReport ReadObjects(const std::filesystem::path& path,
   return report;
 }
 
-ObjectReport ReadObjects(const std::filesystem::path& path) {
+ObjectResults ReadObjects(const std::filesystem::path& path) {
   return ReadObjects(path, path.parent_path() / kObservationsFile);
 }
 

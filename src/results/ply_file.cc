@@ -19,10 +19,10 @@ std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
   return file.PointFile();
 }
 
-std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
+std::string FormatObjectsPly(std::span<const ObjectResult> objects) {
   const TriangleMesh sphere = UnitSphere();
   PlyWriter file;
-  for (const ReportedObject& object : objects) {
+  for (const ObjectResult& object : objects) {
     if (object.state == ObjectState::kMapped) {
       file.AddMesh(sphere, object.ellipsoid.world_from_object, object.ellipsoid.half_axes,
                    ColourOfClass(object.label));

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "report/object_report.h"
+#include "report/object_results.h"
 
 namespace hullslam {
 
@@ -18,6 +18,6 @@ std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
 // have the same properties as above; the faces are `uchar 3, int a b c`, with corners in
 // anticlockwise order seen from outside. The colour shows the class; a class has the same colour in
 // every run.
-std::string FormatObjectsPly(std::span<const ReportedObject> objects);
+std::string FormatObjectsPly(std::span<const ObjectResult> objects);
 
 }  // namespace hullslam

@@ -57,7 +57,7 @@ SceneJson SceneObjectJson(const SceneObject& object) {
       {"box", BoxJson(object.box)},
       {"centre_covariance", covariance ? MatrixJson(covariance->center) : SceneJson(nullptr)},
       {"axes_covariance", covariance ? MatrixJson(covariance->half_axes) : SceneJson(nullptr)},
-      {"times_seen", object.views},
+      {"times_seen", object.observations},
       {"first_seen", Rounded(object.first_seen, kSceneUnit)},
       {"last_seen", Rounded(object.last_seen, kSceneUnit)},
       {"quality", Rounded(object.quality, kSceneUnit)}};

@@ -73,7 +73,7 @@ SceneObject ReadSceneObject(const JsonNode& node) {
     object.covariance = ShapeCovariance{ReadCovariance(node.At("centre_covariance")),
                                         ReadCovariance(node.At("axes_covariance"))};
   }
-  object.views = node.At("times_seen").Count();
+  object.observations = node.At("times_seen").Count();
   object.first_seen = node.At("first_seen").Number(kMostSeconds);
   object.last_seen = node.At("last_seen").Number(kMostSeconds);
   object.quality = node.At("quality").Number(1.0);

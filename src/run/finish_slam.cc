@@ -17,9 +17,9 @@
 #include "results/summary.h"
 #include "run/map_session.h"
 #include "run/mcap_output.h"
+#include "run/print_results.h"
 #include "run/program.h"
 #include "run/report_output.h"
-#include "run/run_report.h"
 #include "run/summarize_run.h"
 #include "scene/make_scene.h"
 #include "system/compose_trajectory.h"
@@ -33,7 +33,7 @@ struct RunContent {
   std::shared_ptr<const Map> map;  // not null
   Trajectory trajectory;
   LocatedLandmarks landmarks;
-  ObjectReport objects;
+  ObjectResults objects;
   RunSummary summary;
 };
 
@@ -72,12 +72,14 @@ std::span<const LeftIsland> KeptIslands(const EndedRun& run) {
 }
 
 // Each island that was not joined has files of its own, named by its number.
-void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, const Sensor& sensor) {
+void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, const Sensor& sensor,
+                  const ImageSequence& sequence) {
   for (const LeftIsland& island : islands) {
     const std::string name = IslandSuffix(island.id);
     const Trajectory keyframes = KeyframeTrajectory(*island.map);
-    output.Write({"trajectory" + name + ".txt", FormatTrajectory(island.trajectory)});
-    output.Write({"keyframes" + name + ".txt", FormatTrajectory(keyframes)});
+    output.Write(
+        {"trajectory" + name + ".txt", FormatTrajectory(AsRead(sequence, island.trajectory))});
+    output.Write({"keyframes" + name + ".txt", FormatTrajectory(AsRead(sequence, keyframes))});
     output.Write(
         {"map" + name + ".ply", MapPly(LocateLandmarks(*island.map, sensor).positions, keyframes)});
   }
@@ -85,11 +87,16 @@ void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, con
 
 void WriteFiles(const EndedRun& run, const RunContent& content, OutputFolder& output) {
   const Map& map = *content.map;
-  output.Write({"trajectory.txt", FormatTrajectory(RunParts(run.arguments, run.earlier_sessions,
-                                                            content.trajectory))});
-  output.Write({"keyframes.txt", FormatTrajectory(KeyframeParts(run.arguments, map))});
+  output.Write(
+      {"trajectory.txt", FormatTrajectory(RunParts(run.arguments, run.earlier_sessions,
+                                                   AsRead(run.sequence, content.trajectory)))});
+  std::vector<TrajectoryPart> keyframes = KeyframeParts(run.arguments, map);
+  for (TrajectoryPart& part : keyframes) {
+    part.poses = AsRead(run.sequence, std::move(part.poses));
+  }
+  output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
   output.Write({"map.ply", MapPly(content.landmarks.positions, KeyframeTrajectory(map))});
-  WriteIslands(output, KeptIslands(run), MakeSensor(run.settings.options));
+  WriteIslands(output, KeptIslands(run), MakeSensor(run.settings.options), run.sequence);
   if (run.sequence.converted_groundtruth) {
     output.Write({"groundtruth.txt", FormatTrajectory(*run.sequence.converted_groundtruth)});
   }
@@ -137,7 +144,7 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
                             .trajectory = &content.trajectory,
                             .objects = &content.objects});
   if (!arguments.quiet) {
-    PrintReport(arguments, content.summary, content.objects);
+    PrintResults(arguments, content.summary, content.objects);
   }
   live.End(content.map, SummaryJson(content.summary));
   const std::string unreported =

@@ -85,6 +85,10 @@ void FrameSource::AddMasks(size_t frame, LoadedImage& loaded) const {
   if (network == nullptr && sequence_.fit_mask != nullptr) {
     std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
   }
+  loaded.image->right_masks = masks_.ReadRight(frame);
+  if (sequence_.fit_right_mask != nullptr) {
+    std::ranges::for_each(loaded.image->right_masks, sequence_.fit_right_mask);
+  }
 }
 
 std::optional<LoadedFrame> FrameSource::BuildNext() {

@@ -150,7 +150,7 @@ std::chrono::steady_clock::duration LiveOutput::BeforeFrame(FrameSource& frames,
   return waited;
 }
 
-void LiveOutput::NoteReport(const FrameReport& report) {
+void LiveOutput::NoteFrame(const FrameReport& report) {
   if (view_) {
     report_ = report;
   }

@@ -51,7 +51,7 @@ class LiveOutput {
   std::chrono::steady_clock::duration BeforeFrame(FrameSource& frames, System& system,
                                                   const std::function<void()>& on_pause);
   // To be called with each report of the System.
-  void NoteReport(const FrameReport& report);
+  void NoteFrame(const FrameReport& report);
   // After each frame. It is the `number`-th one, counted from 1, and tracking took this time.
   void AfterFrame(const LoadedFrame& frame, size_t number, double track_ms, const System& system);
   // Before the map is adjusted at the end, and when all results are written.

@@ -38,7 +38,7 @@ SettingsSources SourcesOf(const LoadedSettings& settings, std::span<const std::s
           .negative_fy = negative_fy};
 }
 
-void TakeReport(SettingsReport report, LoadedSettings& settings) {
+void TakeNotes(SettingsNotes report, LoadedSettings& settings) {
   for (const std::string& warning : report.warnings) {
     PrintError("warning: {}\n", warning);
   }
@@ -91,19 +91,19 @@ void AddPresetArgument(CLI::App& app, std::string& preset) {
 LoadedSettings LoadSettings(const std::filesystem::path& file, const std::string& preset,
                             std::span<const std::string> overrides, NegativeFy negative_fy) {
   LoadedSettings settings{.options = {}, .preset = ReadPresetIfGiven(preset)};
-  SettingsReport report;
+  SettingsNotes report;
   settings.options = ReadSettings(file, SourcesOf(settings, overrides, negative_fy), report);
-  TakeReport(std::move(report), settings);
+  TakeNotes(std::move(report), settings);
   return settings;
 }
 
 LoadedSettings LoadSettings(const CameraCalibration& calibration, const std::string& source,
                             const std::string& preset, std::span<const std::string> overrides) {
   LoadedSettings settings{.options = {}, .preset = ReadPresetIfGiven(preset)};
-  SettingsReport report;
+  SettingsNotes report;
   settings.options =
       MakeSettings(calibration, source, SourcesOf(settings, overrides, NegativeFy::kError), report);
-  TakeReport(std::move(report), settings);
+  TakeNotes(std::move(report), settings);
   return settings;
 }
 

@@ -23,7 +23,7 @@ struct LoadedSettings {
   SystemOptions options;
   std::optional<Preset> preset = std::nullopt;
   std::vector<PresetOverride> preset_overrides = {};
-  std::string camera_note = {};  // this and the size as in SettingsReport
+  std::string camera_note = {};  // this and the size as in SettingsNotes
   int read_width = 0;
   int read_height = 0;
 };

@@ -26,6 +26,13 @@ void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& f
   AddMaskFormat(app, format, "--masks-format");
 }
 
+void AddRightMaskArgument(CLI::App& app, std::filesystem::path& path) {
+  app.add_option("--masks-right", path,
+                 "instance masks of the right images, in the format of --masks: more lines of the "
+                 "same objects")
+      ->needs("--masks");
+}
+
 void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every) {
   CLI::Option* const segment =
       app.add_option("--segment", network,
@@ -60,6 +67,14 @@ std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
   return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
 }
 
+void SequenceMasks::AddRight(const MaskRequest& request, std::vector<MaskFrame> frames) {
+  right_ = std::make_unique<const SequenceMasks>(request, std::move(frames));
+}
+
+std::vector<InstanceMask> SequenceMasks::ReadRight(size_t frame) const {
+  return right_ == nullptr ? std::vector<InstanceMask>() : right_->Read(frame);
+}
+
 std::set<std::string> SequenceMasks::Labels() const {
   if (network_ != nullptr) {
     return {network_->class_names().begin(), network_->class_names().end()};
@@ -83,7 +98,7 @@ std::string SequenceMasks::Describe() const {
   }
   return source_ == nullptr
              ? std::string("no masks")
-             : fmt::format("masks: {} ({}), {} of {} frames have none{}{}", path_,
+             : fmt::format("masks: {} ({}), {} of {} frames have none{}{}{}", path_,
                            source_->format(), counts_.without_masks, frames_.size(),
                            counts_.missing == 0
                                ? std::string()
@@ -93,7 +108,8 @@ std::string SequenceMasks::Describe() const {
                            counts_.without_area == 0
                                ? std::string()
                                : fmt::format("; left out: {} without an outline of 1 px^2 or more",
-                                             Counted(counts_.without_area, "instance")));
+                                             Counted(counts_.without_area, "instance")),
+                           right_ == nullptr ? std::string() : "\nright " + right_->Describe());
 }
 
 }  // namespace hullslam

@@ -20,6 +20,8 @@ namespace hullslam {
 
 // Adds --masks and --masks-format, which write to `path` and `format`. Both must outlive the app.
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
+// Adds --masks-right, after AddMaskArguments().
+void AddRightMaskArgument(CLI::App& app, std::filesystem::path& path);
 // Adds --segment and --segment-every, after AddMaskArguments().
 void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every);
 // Adds only the option for the format, under the given names, for programs that take the masks as a
@@ -36,8 +38,12 @@ class SequenceMasks {
   // Masks that are made when they are read.
   SequenceMasks(std::unique_ptr<const NetworkMasks> network, std::vector<MaskFrame> frames);
 
+  // Adds the masks of the right images of a stereo camera.
+  void AddRight(const MaskRequest& request, std::vector<MaskFrame> frames);
+
   // The masks of the frame with this index. May be called by another thread.
   std::vector<InstanceMask> Read(size_t frame) const;
+  std::vector<InstanceMask> ReadRight(size_t frame) const;
   // Null for masks from files. Those of a network are in the pixels of the images as loaded.
   const NetworkMasks* network() const { return network_; }
   // The classes of all masks of all frames, which are all read, or those that the network knows.
@@ -52,6 +58,7 @@ class SequenceMasks {
   std::unique_ptr<const MaskSource> source_;
   const NetworkMasks* network_ = nullptr;  // the source, if it is a network
   MaskCounts counts_;
+  std::unique_ptr<const SequenceMasks> right_;  // null without masks of right images
 };
 
 }  // namespace hullslam

@@ -87,6 +87,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   }
   AddGroundtruth(app, help, arguments);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  if (arguments.sensor == SensorKind::kStereo) {
+    AddRightMaskArgument(app, arguments.masks_right);
+  }
   AddNetworkArguments(app, arguments.segment, arguments.segment_every);
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);

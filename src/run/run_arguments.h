@@ -26,10 +26,11 @@ struct RunArguments {
   std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
   std::filesystem::path groundtruth;   // empty: that of the sequence; "none": none
   FrameSelection selection;
-  std::string preset;             // a name or a file; empty: none
-  std::filesystem::path masks;    // empty: none
-  std::string masks_format;       // empty: detected
-  std::filesystem::path segment;  // network that makes masks; empty: none
+  std::string preset;                      // a name or a file; empty: none
+  std::filesystem::path masks;             // empty: none
+  std::string masks_format;                // empty: detected
+  std::filesystem::path masks_right = {};  // of the right images of a stereo camera; empty: none
+  std::filesystem::path segment;           // network that makes masks; empty: none
   size_t segment_every = 1;
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";

@@ -110,10 +110,15 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
 SequenceMasks OpenRunMasks(const RunArguments& arguments, const ImageSequence& sequence,
                            const PinholeCamera& camera) {
   if (arguments.segment.empty()) {
-    return SequenceMasks({arguments.masks, arguments.masks_format,
-                          sequence.read_width > 0 ? sequence.read_width : camera.width,
-                          sequence.read_height > 0 ? sequence.read_height : camera.height},
-                         MaskFrames(sequence));
+    MaskRequest request = {arguments.masks, arguments.masks_format,
+                           sequence.read_width > 0 ? sequence.read_width : camera.width,
+                           sequence.read_height > 0 ? sequence.read_height : camera.height};
+    SequenceMasks masks(request, MaskFrames(sequence));
+    if (!arguments.masks_right.empty()) {
+      request.path = arguments.masks_right;
+      masks.AddRight(request, RightMaskFrames(sequence));
+    }
+    return masks;
   }
   // In real time a second thread of the network would only take time from tracking.
   const SegmenterOptions options = {.threads = arguments.realtime ? 1 : 0};
@@ -143,7 +148,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
-    live.NoteReport(report);
+    live.NoteFrame(report);
     NoteFrame(report, arguments.selection,
               report.tracked.timestamp - sequence.frames.front().timestamp, result);
   });
@@ -193,6 +198,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
   return {arguments.sequence,
           arguments.masks,
+          arguments.masks_right,
           arguments.segment,
           arguments.settings,
           arguments.associations,

@@ -36,7 +36,7 @@ void WarnOfScale(const Trajectory& groundtruth, const Trajectory& trajectory, do
   constexpr double kMuchBetter = 0.5;
   AteOptions options;
   options.alignment = AlignmentKind::kSim3;
-  const AteReport scaled = EvaluateAte(groundtruth, trajectory, options);
+  const AteResult scaled = EvaluateAte(groundtruth, trajectory, options);
   const double scale = scaled.reference_from_estimate.scale;
   if (scaled.ok() && std::abs(scale - 1.0) > kMostDifference &&
       scaled.errors.rmse < kMuchBetter * rmse) {
@@ -51,7 +51,7 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
               TrajectorySummary& summary) {
   AteOptions options;
   options.alignment = AlignmentOf(sensor);
-  const AteReport ate = EvaluateAte(groundtruth, trajectory, options);
+  const AteResult ate = EvaluateAte(groundtruth, trajectory, options);
   if (!ate.ok()) {
     PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
     return;
@@ -66,7 +66,7 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
     WarnOfScale(groundtruth, trajectory, ate.errors.rmse);
   }
   const Trajectory scaled = Scaled(trajectory, ate.reference_from_estimate.scale);
-  const RpeReport rpe = EvaluateRpe(groundtruth, scaled);
+  const RpeResult rpe = EvaluateRpe(groundtruth, scaled);
   if (const std::string swapped = DescribeSwappedRotations(groundtruth, scaled, rpe);
       !swapped.empty()) {
     PrintError("warning: {}\n", swapped);
@@ -92,7 +92,7 @@ std::optional<double> ErrorOf(const std::optional<Trajectory>& groundtruth,
   }
   AteOptions options;
   options.alignment = AlignmentOf(sensor);
-  const AteReport ate = EvaluateAte(*groundtruth, trajectory, options);
+  const AteResult ate = EvaluateAte(*groundtruth, trajectory, options);
   return ate.ok() ? std::optional(ate.errors.rmse) : std::nullopt;
 }
 
@@ -214,7 +214,7 @@ std::map<std::string, size_t> CountChanges(const std::vector<ChangedObject>& cha
   return counts;
 }
 
-ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts) {
+ObjectsSummary SummarizeObjects(const ObjectResults& report, const ObjectCounts& counts) {
   const MapFit fit = SummarizeFits(report);
   ObjectsSummary summary;
   summary.count = fit.objects;

@@ -12,7 +12,7 @@
 #include "hullslam/system/system.h"
 #include "hullslam/util/mapped_vector.h"
 #include "report/lost_frames.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "results/summary.h"
 #include "run/load_settings.h"
 #include "run/run_arguments.h"
@@ -39,6 +39,6 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
 // happen.
 std::map<std::string, size_t> CountChanges(const std::vector<ChangedObject>& changes);
 
-ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
+ObjectsSummary SummarizeObjects(const ObjectResults& report, const ObjectCounts& counts);
 
 }  // namespace hullslam

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "objects/object_view.h"
-#include "scene/joint_views.h"
+#include "objects/resolved_observation.h"
+#include "scene/joint_observations.h"
 #include "scene/object_body.h"
 #include "scene/relations.h"
 #include "scene/shape_covariance.h"
@@ -17,7 +17,7 @@
 namespace hullslam {
 namespace {
 
-SceneObject Describe(const ReportedObject& reported) {
+SceneObject Describe(const ObjectResult& reported) {
   SceneObject object;
   object.id = reported.id;
   object.label = reported.label;
@@ -30,27 +30,28 @@ SceneObject Describe(const ReportedObject& reported) {
     share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(object.shares.size());
   }
   object.ellipsoid = reported.ellipsoid;
-  object.views = reported.views.size();
-  object.first_seen = reported.views.front().timestamp;
-  object.last_seen = reported.views.front().timestamp;
-  for (const ReportedView& view : reported.views) {  // sessions may have earlier time stamps
-    object.first_seen = std::min(object.first_seen, view.timestamp);
-    object.last_seen = std::max(object.last_seen, view.timestamp);
+  object.observations = reported.observations.size();
+  object.first_seen = reported.observations.front().timestamp;
+  object.last_seen = reported.observations.front().timestamp;
+  for (const ObservationResult& observation :
+       reported.observations) {  // sessions may have earlier time stamps
+    object.first_seen = std::min(object.first_seen, observation.timestamp);
+    object.last_seen = std::max(object.last_seen, observation.timestamp);
   }
   object.quality = QualityOf(reported);
   return object;
 }
 
-std::vector<float> MeanEmbedding(std::span<const ObjectView> views) {
+std::vector<float> MeanEmbedding(std::span<const ResolvedObservation> observations) {
   Eigen::VectorXd sum;
-  for (const ObjectView& view : views) {
-    const std::vector<float>& embedding = view.detection->embedding;
+  for (const ResolvedObservation& observation : observations) {
+    const std::vector<float>& embedding = observation.detection->embedding;
     const auto size = static_cast<Eigen::Index>(embedding.size());
     if (sum.size() == 0) {
       sum = Eigen::VectorXd::Zero(size);
     }
     if (size > 0 && size == sum.size()) {  // sessions may have masks of different networks
-      sum += view.detection->score *
+      sum += observation.detection->score *
              Eigen::Map<const Eigen::VectorXf>(embedding.data(), size).cast<double>();
     }
   }
@@ -66,24 +67,24 @@ std::vector<float> MeanEmbedding(std::span<const ObjectView> views) {
 
 }  // namespace
 
-Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up) {
+Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& up) {
   Scene scene;
   scene.up = up.up;
   scene.up_from = up.from;
   const Eigen::Quaterniond upright_from_world =
       UprightFromWorld(up.up.value_or(Eigen::Vector3d::UnitZ()));
   std::vector<ObjectBody> bodies;
-  for (const ReportedObject& reported : report.objects) {
+  for (const ObjectResult& reported : report.objects) {
     if (reported.state != ObjectState::kMapped) {
       continue;
     }
     SceneObject& object = scene.objects.emplace_back(Describe(reported));
     const ObjectLandmark& landmark = map.objects().At(reported.id);
-    const std::vector<ObjectView> views = CollectViews(map, landmark);
-    object.embedding = MeanEmbedding(views);
-    object.covariance = CovarianceOf(report.camera, object.ellipsoid, landmark.start, views);
+    const std::vector<ResolvedObservation> observations = ResolveObservations(map, landmark);
+    object.embedding = MeanEmbedding(observations);
+    object.covariance = CovarianceOf(report.camera, object.ellipsoid, landmark.start, observations);
     bodies.push_back(
-        MeasureBody(object.id, object.ellipsoid, report.camera, views, upright_from_world));
+        MeasureBody(object.id, object.ellipsoid, report.camera, observations, upright_from_world));
     if (up.up && object.covariance) {
       bodies.back().height_sigma = std::sqrt(up.up->dot(object.covariance->center * *up.up));
     }
@@ -91,10 +92,10 @@ Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& u
       object.box = BoxOf(bodies.back(), upright_from_world);
     }
   }
-  const ViewStatistics views = CollectViewStatistics(map, report.camera);
-  scene.relations = FindViewRelations(views);
+  const ObservationStatistics observations = CollectObservationStatistics(map, report.camera);
+  scene.relations = FindObservedRelations(observations);
   if (up.up) {
-    SceneRelations found = FindStandingRelations(bodies, views);
+    SceneRelations found = FindStandingRelations(bodies, observations);
     std::move(found.relations.begin(), found.relations.end(), std::back_inserter(scene.relations));
     scene.surfaces = std::move(found.surfaces);
   }
@@ -103,7 +104,7 @@ Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& u
   return scene;
 }
 
-Scene MakeScene(const Map& map, const ObjectReport& report,
+Scene MakeScene(const Map& map, const ObjectResults& report,
                 const std::optional<Trajectory>& groundtruth) {
   std::vector<Eigen::Vector3d> landmarks;
   map.landmarks().ForEach(

@@ -5,7 +5,7 @@
 
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "scene/scene.h"
 #include "scene/up_direction.h"
 
@@ -13,12 +13,12 @@ namespace hullslam {
 
 // The scene of a map. `report` has the objects of the same map with their fits; only mapped objects
 // take part. If the upward direction is not known, there are no boxes, no surfaces, and only the
-// relations that follow from the views.
-Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up);
+// relations that follow from the observations.
+Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& up);
 
 // The same with the upward direction that FindUp() finds: from the ground truth of the sequence if
 // it has one, else from the horizontal planes of the landmarks.
-Scene MakeScene(const Map& map, const ObjectReport& report,
+Scene MakeScene(const Map& map, const ObjectResults& report,
                 const std::optional<Trajectory>& groundtruth);
 
 }  // namespace hullslam

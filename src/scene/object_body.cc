@@ -67,12 +67,13 @@ std::vector<Eigen::Vector2d> FootprintOf(const Ellipsoid& upright, const Reach& 
 
 // Whether enough of the lines that limit the object downwards are not cut off.
 bool IsBottomSeen(const Ellipsoid& ellipsoid, const PinholeCamera& camera,
-                  std::span<const ObjectView> views, const Eigen::Vector3d& up_in_object) {
+                  std::span<const ResolvedObservation> observations,
+                  const Eigen::Vector3d& up_in_object) {
   size_t lines = 0;
   size_t free = 0;
-  for (const ObjectView& view : views) {
-    for (const SilhouetteLine& line : view.detection->lines) {
-      const auto plane = PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
+  for (const ResolvedObservation& observation : observations) {
+    for (const SilhouetteLine& line : observation.detection->lines) {
+      const auto plane = PlaneOfLine(camera, observation.cam_from_world, ellipsoid, line.line);
       if (plane && plane->normal.dot(up_in_object) < -kDownwards) {
         ++lines;
         free += line.is_one_sided ? 0 : 1;
@@ -148,15 +149,15 @@ Eigen::Quaterniond UprightFromWorld(const Eigen::Vector3d& up) {
 }
 
 ObjectBody MeasureBody(ObjectId id, const Ellipsoid& ellipsoid, const PinholeCamera& camera,
-                       std::span<const ObjectView> views,
+                       std::span<const ResolvedObservation> observations,
                        const Eigen::Quaterniond& upright_from_world) {
   ObjectBody body;
   body.id = id;
   body.ellipsoid = Rigid3(upright_from_world, Eigen::Vector3d::Zero()) * ellipsoid;
-  const std::vector<MisfitSample> samples = MeasureMisfit(camera, ellipsoid, views);
+  const std::vector<MisfitSample> samples = MeasureMisfit(camera, ellipsoid, observations);
   Finish(body, Reach(body.ellipsoid, samples));
   body.is_bottom_seen = IsBottomSeen(
-      ellipsoid, camera, views,
+      ellipsoid, camera, observations,
       body.ellipsoid.world_from_object.rotation.conjugate() * Eigen::Vector3d::UnitZ());
   return body;
 }

@@ -8,7 +8,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/object_landmark.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "scene/scene.h"
 
 namespace hullslam {
@@ -35,11 +35,11 @@ struct ObjectBody {
 // The rotation into the upright frame. The x axis is near the one of the world.
 Eigen::Quaterniond UprightFromWorld(const Eigen::Vector3d& up);
 
-// The body of an object with the given views. The silhouettes measure how far the object reaches
-// beyond its ellipsoid in each direction (objects/misfit.h), so the body of a box is less round
-// than its ellipsoid. In directions that no view has measured, it is the ellipsoid.
+// The body of an object with the given observations. The silhouettes measure how far the object
+// reaches beyond its ellipsoid in each direction (objects/misfit.h), so the body of a box is less
+// round than its ellipsoid. In directions that no observation has measured, it is the ellipsoid.
 ObjectBody MeasureBody(ObjectId id, const Ellipsoid& ellipsoid, const PinholeCamera& camera,
-                       std::span<const ObjectView> views,
+                       std::span<const ResolvedObservation> observations,
                        const Eigen::Quaterniond& upright_from_world);
 
 // The same for an object that is known by its ellipsoid alone.

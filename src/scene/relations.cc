@@ -19,9 +19,9 @@ constexpr double kLeastVolumeIn = 0.5;    // share of the volume that is inside,
 constexpr double kLeastVolumePart = 0.8;  // the same for "part of"
 constexpr double kLowerPart = 1.0 / 3.0;  // what stands in the lowest third of a thing is not on it
 constexpr double kMostBesideGap = 1.0;    // of the mean width of the two objects
-constexpr size_t kLeastViews = 3;         // for relations that are seen in images
-constexpr double kLeastFrontShare = 0.5;  // of the common views
-constexpr double kLeastHiddenShare = 0.25;  // of the views in which it should be seen
+constexpr size_t kLeastObservations = 3;  // for relations that are seen in images
+constexpr double kLeastFrontShare = 0.5;  // of the common observations
+constexpr double kLeastHiddenShare = 0.25;  // of the observations in which it should be seen
 
 // How one object is held by another one.
 struct Holder {
@@ -33,22 +33,22 @@ struct Holder {
 
 // The evidence that A is a part of B, in B or on B, if it is.
 std::optional<Holder> HolderOf(const ObjectBody& a, const ObjectBody& b,
-                               const ViewStatistics& views) {
+                               const ObservationStatistics& observations) {
   if (FootprintGap(a, b) > 0.0 || b.size <= 0.0) {
     return std::nullopt;
   }
   const double inside = VolumeShare(a.ellipsoid, b.ellipsoid);
   const double overlap = FootprintOverlap(a, b);
-  const JointViews& joint = views.Joint(a.id, b.id);
+  const JointObservations& joint = observations.Joint(a.id, b.id);
   const double gap = a.bottom - b.top;
   const bool is_smaller = a.size < b.size;
-  if (is_smaller && inside >= kLeastVolumePart && joint.views >= kLeastViews &&
-      2 * joint.mask_inside >= joint.views) {
+  if (is_smaller && inside >= kLeastVolumePart && joint.observations >= kLeastObservations &&
+      2 * joint.mask_inside >= joint.observations) {
     return Holder{RelationKind::kPartOf,
                   &b,
                   std::abs(gap),
                   {{"inside", inside},
-                   {"views", static_cast<double>(joint.views)},
+                   {"views", static_cast<double>(joint.observations)},
                    {"mask_inside_views", static_cast<double>(joint.mask_inside)}}};
   }
   const bool is_low = a.bottom < b.bottom + kLowerPart * b.Height();
@@ -64,14 +64,14 @@ std::optional<Holder> HolderOf(const ObjectBody& a, const ObjectBody& b,
 // An object is carried by one other at most: the one whose top is nearest to its lower side. Two
 // objects cannot carry each other, because none is on a thing that begins higher up (HolderOf).
 std::vector<std::optional<Holder>> FindHolders(std::span<const ObjectBody> bodies,
-                                               const ViewStatistics& views) {
+                                               const ObservationStatistics& observations) {
   std::vector<std::optional<Holder>> holders(bodies.size());
   for (size_t i = 0; i < bodies.size(); ++i) {
     for (const ObjectBody& other : bodies) {
       if (other.id == bodies[i].id) {
         continue;
       }
-      auto holder = HolderOf(bodies[i], other, views);
+      auto holder = HolderOf(bodies[i], other, observations);
       if (holder && (!holders[i] || holder->height_error < holders[i]->height_error)) {
         holders[i] = std::move(holder);
       }
@@ -136,10 +136,10 @@ void Sort(std::vector<Relation>& relations) {
 }  // namespace
 
 SceneRelations FindStandingRelations(std::span<const ObjectBody> measured,
-                                     const ViewStatistics& views) {
+                                     const ObservationStatistics& observations) {
   SceneRelations found;
   const std::vector<ObjectBody> bodies = ExtendToFloor(measured);
-  const std::vector<std::optional<Holder>> holders = FindHolders(bodies, views);
+  const std::vector<std::optional<Holder>> holders = FindHolders(bodies, observations);
   std::vector<const ObjectBody*> standing;
   for (size_t i = 0; i < bodies.size(); ++i) {
     if (!holders[i]) {
@@ -152,30 +152,32 @@ SceneRelations FindStandingRelations(std::span<const ObjectBody> measured,
       found.relations.push_back({holder->id, RelationKind::kSupports, bodies[i].id, evidence});
     }
   }
-  found.surfaces = FindSurfaces(standing, FloorHeight(measured), views);
+  found.surfaces = FindSurfaces(standing, FloorHeight(measured), observations);
   AddBeside(bodies, FindStands(bodies, holders, found.surfaces), found.relations);
   Sort(found.relations);
   return found;
 }
 
-std::vector<Relation> FindViewRelations(const ViewStatistics& views) {
+std::vector<Relation> FindObservedRelations(const ObservationStatistics& observations) {
   std::vector<Relation> relations;
-  for (const auto& [pair, joint] : views.joint) {
-    const double share = static_cast<double>(joint.in_front) / static_cast<double>(joint.views);
-    if (joint.views >= kLeastViews && share >= kLeastFrontShare) {
+  for (const auto& [pair, joint] : observations.joint) {
+    const double share =
+        static_cast<double>(joint.in_front) / static_cast<double>(joint.observations);
+    if (joint.observations >= kLeastObservations && share >= kLeastFrontShare) {
       relations.push_back({pair.first,
                            RelationKind::kInFrontOf,
                            pair.second,
-                           {{"views", static_cast<double>(joint.views)}, {"share", share}}});
+                           {{"views", static_cast<double>(joint.observations)}, {"share", share}}});
     }
   }
-  for (const auto& [pair, hidden] : views.hidden) {
-    const double share = static_cast<double>(hidden.hidden) / static_cast<double>(hidden.views);
-    if (hidden.hidden >= kLeastViews && share >= kLeastHiddenShare) {
+  for (const auto& [pair, hidden] : observations.hidden) {
+    const double share =
+        static_cast<double>(hidden.hidden) / static_cast<double>(hidden.observations);
+    if (hidden.hidden >= kLeastObservations && share >= kLeastHiddenShare) {
       relations.push_back({pair.first,
                            RelationKind::kHiddenBy,
                            pair.second,
-                           {{"views", static_cast<double>(hidden.views)},
+                           {{"views", static_cast<double>(hidden.observations)},
                             {"share", share},
                             {"most_hidden", hidden.most}}});
     }

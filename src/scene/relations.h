@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/joint_views.h"
+#include "scene/joint_observations.h"
 #include "scene/object_body.h"
 #include "scene/scene.h"
 
@@ -18,9 +18,9 @@ struct SceneRelations {
 // The relations that need the upward direction: on, supports, in, part of and beside. docs/scene.md
 // defines them; the bounds are the constants of the source.
 SceneRelations FindStandingRelations(std::span<const ObjectBody> measured,
-                                     const ViewStatistics& views);
+                                     const ObservationStatistics& observations);
 
-// The relations that follow from the views alone: in front of and hidden by.
-std::vector<Relation> FindViewRelations(const ViewStatistics& views);
+// The relations that follow from the observations alone: in front of and hidden by.
+std::vector<Relation> FindObservedRelations(const ObservationStatistics& observations);
 
 }  // namespace hullslam

@@ -37,7 +37,7 @@ struct SceneObject {
   Ellipsoid ellipsoid;                   // world frame
   std::optional<UprightBox> box;         // absent if the upward direction is not known
   std::optional<ShapeCovariance> covariance;
-  size_t views = 0;         // number of keyframes that observe it
+  size_t observations = 0;  // number of keyframes that observe it
   double first_seen = 0.0;  // s, time stamps of the first and the last of them
   double last_seen = 0.0;
   double quality = 0.0;  // QualityOf()

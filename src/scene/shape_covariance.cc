@@ -78,13 +78,13 @@ double Correlation(size_t a, size_t b) {
   return std::exp(-0.5 * angle * angle / (kShapeWidth * kShapeWidth));
 }
 
-void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid, const ObjectView& view,
-              std::vector<LineTerm>& terms) {
+void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+              const ResolvedObservation& observation, std::vector<LineTerm>& terms) {
   const size_t first = terms.size();
-  for (const SilhouetteLine& line : view.detection->lines) {
+  for (const SilhouetteLine& line : observation.detection->lines) {
     const auto plane = line.is_one_sided
                            ? std::nullopt
-                           : PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
+                           : PlaneOfLine(camera, observation.cam_from_world, ellipsoid, line.line);
     if (plane) {
       terms.push_back({.patch = PatchOf(plane->normal),
                        .gradient = GradientOf(ellipsoid, plane->normal),
@@ -210,10 +210,10 @@ Information PriorOf(const Ellipsoid& start, bool has_depth) {
 
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
-                                            std::span<const ObjectView> views) {
+                                            std::span<const ResolvedObservation> observations) {
   std::vector<LineTerm> terms;
-  for (const ObjectView& view : views) {
-    AddLines(camera, ellipsoid, view, terms);
+  for (const ResolvedObservation& observation : observations) {
+    AddLines(camera, ellipsoid, observation, terms);
   }
   if (terms.empty()) {
     return std::nullopt;
@@ -222,7 +222,7 @@ std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const E
   const ShapeVariances variances = MeasureVariances(patches);
   const double noise_px = MeasureNoise(terms, patches);
   // As in the refinement, the misfit sets the sigma of a line.
-  Information information = PriorOf(start, HasDepth(views));
+  Information information = PriorOf(start, HasDepth(observations));
   Information errors = information;
   for (LineTerm& term : terms) {
     const double noise = noise_px / term.pixels_per_metre;

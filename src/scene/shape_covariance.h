@@ -6,21 +6,21 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "scene/scene.h"
 
 namespace hullslam {
 
 // The covariance of the centre and of the half axes of an ellipsoid that was fitted to the lines of
-// the views. `start` is the shape of its prior. Nothing if no line touches the ellipsoid in front
-// of the camera.
+// the observations. `start` is the shape of its prior. Nothing if no line touches the ellipsoid in
+// front of the camera.
 //
 // The errors of lines are not independent. Most of them come from the shape: a real object is no
-// ellipsoid, and where it reaches beyond its ellipsoid, all lines of all views that touch it there
-// are wrong in the same way. A thousand views from one side tell no more about this than ten do. So
-// the deviation of the shape, as a function of the unit normal n of the tangent plane, is taken as
-// a random field on the sphere. With the correlation c(n, m) = exp(-(angle between n and m)^2 / (2
-// w^2)), its covariance is
+// ellipsoid, and where it reaches beyond its ellipsoid, all lines of all observations that touch it
+// there are wrong in the same way. A thousand observations from one side tell no more about this
+// than ten do. So the deviation of the shape, as a function of the unit normal n of the tangent
+// plane, is taken as a random field on the sphere. With the correlation c(n, m) = exp(-(angle
+// between n and m)^2 / (2 w^2)), its covariance is
 //   K(n, m) = e^2 (c(n, m) + c(n, -m)) + o^2 (c(n, m) - c(n, -m)).
 // The first term is the even part of the deviation, which boxes and cylinders have; it moves no
 // centre unless the object is seen from one side only. The second term is the odd part, such as a
@@ -37,6 +37,6 @@ namespace hullslam {
 // object at nearly the same normal. The error of the camera's poses is not part of it.
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
-                                            std::span<const ObjectView> views);
+                                            std::span<const ResolvedObservation> observations);
 
 }  // namespace hullslam

@@ -53,14 +53,15 @@ Surface MakeSurface(const std::vector<const ObjectBody*>& bodies) {
 
 // A surface for each group of two objects or more that were seen together at one height.
 std::vector<Surface> GroupByHeight(const std::vector<const ObjectBody*>& bodies,
-                                   const ViewStatistics& views) {
+                                   const ObservationStatistics& observations) {
   Groups groups(bodies.size());
   for (size_t i = 0; i < bodies.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
       const ObjectBody& a = *bodies[i];
       const ObjectBody& b = *bodies[k];
       if (std::abs(a.bottom - b.bottom) <= HeightTolerance(a, b) &&
-          FootprintGap(a, b) <= kReach * (a.width + b.width) && views.Joint(a.id, b.id).views > 0) {
+          FootprintGap(a, b) <= kReach * (a.width + b.width) &&
+          observations.Joint(a.id, b.id).observations > 0) {
         groups.Join(i, k);
       }
     }
@@ -146,7 +147,7 @@ std::vector<ObjectBody> ExtendToFloor(std::span<const ObjectBody> bodies) {
 }
 
 std::vector<Surface> FindSurfaces(std::span<const ObjectBody* const> standing, double floor,
-                                  const ViewStatistics& views) {
+                                  const ObservationStatistics& observations) {
   const double usual_size = UsualSize(standing);
   std::vector<const ObjectBody*> low;
   std::vector<const ObjectBody*> raised;
@@ -154,7 +155,7 @@ std::vector<Surface> FindSurfaces(std::span<const ObjectBody* const> standing, d
     const bool is_low = body->bottom <= floor + FloorTolerance(*body, usual_size);
     (is_low ? low : raised).push_back(body);
   }
-  std::vector<Surface> surfaces = GroupByHeight(raised, views);
+  std::vector<Surface> surfaces = GroupByHeight(raised, observations);
   if (!low.empty()) {
     surfaces.push_back(MakeSurface(low));
     surfaces.back().is_lowest = true;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/joint_views.h"
+#include "scene/joint_observations.h"
 #include "scene/object_body.h"
 #include "scene/scene.h"
 
@@ -32,6 +32,6 @@ std::vector<ObjectBody> ExtendToFloor(std::span<const ObjectBody> bodies);
 // together or not. `standing` are the objects that no other object carries, and `floor` is
 // FloorHeight().
 std::vector<Surface> FindSurfaces(std::span<const ObjectBody* const> standing, double floor,
-                                  const ViewStatistics& views);
+                                  const ObservationStatistics& observations);
 
 }  // namespace hullslam

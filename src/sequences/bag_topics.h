@@ -21,7 +21,7 @@ struct BagImage {
   BagTime stamp;       // in the message
   int64_t logged = 0;  // the time at which it was recorded, ns
   size_t bag = 0;      // index of the file
-  MessagePlace place;
+  MessagePosition place;
 };
 
 // A topic of a recording, over all its files.

@@ -170,7 +170,7 @@ StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& sele
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
   LoadPairs(rectifier, sequence.images);
-  AddStates(root, left.body_from_cam * Inverse(rectifier->rectified_from_left()), sequence.images);
+  AddStates(root, left.body_from_cam, sequence.images);
   const fs::path truth = folder / "groundtruth.txt";
   std::error_code error;
   if (!sequence.images.converted_groundtruth && fs::is_regular_file(truth, error)) {

@@ -22,7 +22,7 @@ struct View {
   Rigid3 world_from_cam;
 };
 
-std::vector<View> ViewsOf(const ImageSequence& sequence, const Trajectory& trajectory) {
+std::vector<View> ObservationsOf(const ImageSequence& sequence, const Trajectory& trajectory) {
   constexpr double kSameFrame = 0.5 / kIclFramesPerSecond;
   std::vector<View> views;
   auto pose = trajectory.begin();
@@ -121,7 +121,7 @@ YAxisVotes MeasureYAxis(const ImageSequence& sequence, const Trajectory& as_give
                         const PinholeCamera& camera, const DepthOptions& depth) {
   constexpr size_t kPairs = 16;
   constexpr double kApart = 0.5;  // s
-  const std::vector<View> views = ViewsOf(sequence, as_given);
+  const std::vector<View> views = ObservationsOf(sequence, as_given);
   const size_t step = std::max<size_t>(1, views.size() / kPairs);
   YAxisVotes votes;
   for (size_t i = 0; i + 1 < views.size(); i += step) {

@@ -48,10 +48,20 @@ ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   return image;
 }
 
+Trajectory AsRead(const ImageSequence& sequence, Trajectory poses) {
+  return sequence.cam_from_read ? OfOtherCamera(std::move(poses), *sequence.cam_from_read)
+                                : std::move(poses);
+}
+
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
                                           std::vector<std::string>* notes) {
+  const auto of_loaded = [&sequence](Trajectory as_read) {
+    return sequence.cam_from_read
+               ? OfOtherCamera(std::move(as_read), Inverse(*sequence.cam_from_read))
+               : std::move(as_read);
+  };
   if (sequence.converted_groundtruth) {
-    return sequence.converted_groundtruth;
+    return of_loaded(*sequence.converted_groundtruth);
   }
   if (!sequence.groundtruth) {
     return std::nullopt;
@@ -63,7 +73,7 @@ std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
   if (notes != nullptr) {
     notes->insert(notes->end(), file.notes.begin(), file.notes.end());
   }
-  return std::move(file.poses);
+  return of_loaded(std::move(file.poses));
 }
 
 }  // namespace hullslam

@@ -11,7 +11,6 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
-#include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_file.h"
 
@@ -44,8 +43,8 @@ bool IsTum(const fs::path& folder) {
 }
 
 ImageSequence OpenFolder(const fs::path& folder) {
-  if (Exists(folder / "rgb.csv")) {
-    return OpenVslamlabSequence(folder, folder / "rgb.csv", "rgb_0", "").images;
+  if (Exists(folder / "rgb.csv") && Exists(folder / "rgb_0")) {  // VSLAM-LAB
+    return OpenImageStream(folder / "rgb_0").images;
   }
   if (Exists(folder / "mav0" / "cam0") || Exists(folder / "cam0" / "data.csv")) {
     return OpenEurocSequence(folder).images;

@@ -60,16 +60,18 @@ void ResizeImages(int read_width, int read_height, const PinholeCamera& camera,
   };
   const Eigen::Vector2d scale(static_cast<double>(camera.width) / read_width,
                               static_cast<double>(camera.height) / read_height);
-  sequence.fit_mask = [fit = std::move(sequence.fit_mask), scale](InstanceMask& mask) {
-    if (fit != nullptr) {
-      fit(mask);
-    }
-    for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
-      for (Eigen::Vector2d& point : outline) {
-        point = (point.array() + 0.5) * scale.array() - 0.5;
+  for (auto* const fit_mask : {&sequence.fit_mask, &sequence.fit_right_mask}) {
+    *fit_mask = [fit = std::move(*fit_mask), scale](InstanceMask& mask) {
+      if (fit != nullptr) {
+        fit(mask);
       }
-    }
-  };
+      for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+        for (Eigen::Vector2d& point : outline) {
+          point = (point.array() + 0.5) * scale.array() - 0.5;
+        }
+      }
+    };
+  }
 }
 
 void ResizeImages(const std::string& size, const PinholeCamera& camera, ImageSequence& sequence) {

@@ -13,7 +13,6 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
-#include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
 #include "sequences/resized_images.h"
 #include "settings/stereo_settings.h"
@@ -97,38 +96,20 @@ ImageSequence OpenBagStereo(const Reopening& opening) {
 
 ImageSequence OpenVideo(const Reopening& opening) { return OpenImageStream(opening.path).images; }
 
-ImageSequence OpenVslamlab(const Reopening& opening) {
-  return OpenVslamlabSequence(opening.path, opening.path / opening.Choice("rgb_csv"),
-                              opening.Choice("image_name"),
-                              opening.use_depth ? opening.Choice("depth_name") : "")
-      .images;
-}
-
-ImageSequence OpenVslamlabStereo(const Reopening& opening) {
-  return OpenVslamlabPairs(
-             opening.path, opening.path / opening.Choice("rgb_csv"),
-             {opening.Choice("image_name"), opening.Choice("right_name")},
-             ReadVslamlabPair(opening.Choice("calibration"),
-                              {opening.Choice("image_name"), opening.Choice("right_name")}))
-      .images;
-}
-
 struct NamedDataset {
   const char* name;  // ImageSequence::dataset
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 11> kDatasets = {{{"tum", OpenTum},
-                                                     {"icl", OpenIcl},
-                                                     {"euroc", OpenEuroc},
-                                                     {"euroc_stereo", OpenEurocStereo},
-                                                     {"kitti", OpenKitti},
-                                                     {"stereo_folder", OpenPairs},
-                                                     {"bag", OpenBag},
-                                                     {"bag_stereo", OpenBagStereo},
-                                                     {"video", OpenVideo},
-                                                     {"vslamlab", OpenVslamlab},
-                                                     {"vslamlab_stereo", OpenVslamlabStereo}}};
+constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
+                                                    {"icl", OpenIcl},
+                                                    {"euroc", OpenEuroc},
+                                                    {"euroc_stereo", OpenEurocStereo},
+                                                    {"kitti", OpenKitti},
+                                                    {"stereo_folder", OpenPairs},
+                                                    {"bag", OpenBag},
+                                                    {"bag_stereo", OpenBagStereo},
+                                                    {"video", OpenVideo}}};
 
 }  // namespace
 

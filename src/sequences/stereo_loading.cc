@@ -25,14 +25,18 @@ ImageInput Rectify(const Rectifier& rectifier, double timestamp, const cv::Mat& 
   return pair;
 }
 
-// Masks are moved into the rectified left image. Poses are those of its camera, so the rotation of
-// that is kept for those who need poses of the camera as read.
+// Masks are moved into the rectified images. Poses are estimated of the rectified left camera, so
+// its rotation is kept for those of the camera as read.
 void FitMasks(const Rectifier& rectifier, ImageSequence& sequence) {
   if (rectifier != nullptr) {
     const Eigen::Quaterniond& q = rectifier->rectified_from_left().rotation;
+    if (q.w() != 1.0) {  // a pair that is rectified as read is not turned
+      sequence.cam_from_read = rectifier->rectified_from_left();
+    }
     sequence.choices["rectified_from_left"] =
         fmt::format("{:.9f} {:.9f} {:.9f} {:.9f}", q.x(), q.y(), q.z(), q.w());
-    sequence.fit_mask = [rectifier](InstanceMask& mask) { rectifier->Rectify(mask); };
+    sequence.fit_mask = [rectifier](InstanceMask& mask) { rectifier->RectifyLeft(mask); };
+    sequence.fit_right_mask = [rectifier](InstanceMask& mask) { rectifier->RectifyRight(mask); };
   }
 }
 

@@ -81,12 +81,12 @@ class SettingsInProgress {
   bool IsGiven(const std::string& key) const { return given_.contains(key); }
   // The steps after all settings were set: follows the size of the image and validates the
   // options.
-  SystemOptions Finish(SettingsReport& report);
+  SystemOptions Finish(SettingsNotes& report);
 
  private:
   std::string FollowImage();
   std::string FollowShutter();
-  void ReportOverrides(SettingsReport& report) const;
+  void NoteOverrides(SettingsNotes& report) const;
 
   const SettingsSources& sources_;
   SystemOptions options_;
@@ -189,7 +189,7 @@ std::string SettingsInProgress::FollowShutter() {
              : std::string();
 }
 
-void SettingsInProgress::ReportOverrides(SettingsReport& report) const {
+void SettingsInProgress::NoteOverrides(SettingsNotes& report) const {
   if (!comparison_) {
     return;
   }
@@ -201,7 +201,7 @@ void SettingsInProgress::ReportOverrides(SettingsReport& report) const {
   }
 }
 
-SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
+SystemOptions SettingsInProgress::Finish(SettingsNotes& report) {
   if (const PinholeCamera read = options_.camera; resize_.Changes(read)) {
     report.read_width = read.width;
     report.read_height = read.height;
@@ -211,7 +211,7 @@ SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
   const std::string of_shutter = FollowShutter();
   options_.Validate();
   report.warnings.clear();
-  ReportOverrides(report);
+  NoteOverrides(report);
   for (const std::string& warning : {of_image, of_shutter}) {
     if (!warning.empty()) {
       report.warnings.push_back(warning);
@@ -258,7 +258,7 @@ std::string FolderName(const fs::path& folder) {
 }  // namespace
 
 SystemOptions ReadSettings(const fs::path& file, const SettingsSources& sources,
-                           SettingsReport& report) {
+                           SettingsNotes& report) {
   SettingsInProgress settings(sources);
   const YAML::Node root = ReadYaml(file);
   const std::optional<RecognisedCalibration> recognised = RecogniseCalibration(file, root);
@@ -281,7 +281,7 @@ SystemOptions ReadSettings(const fs::path& file, const SettingsSources& sources,
 
 SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,
                            NegativeFy negative_fy, std::vector<std::string>* warnings) {
-  SettingsReport report;
+  SettingsNotes report;
   SystemOptions options =
       ReadSettings(file, {.overrides = overrides, .negative_fy = negative_fy}, report);
   if (warnings != nullptr) {
@@ -291,7 +291,7 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
 }
 
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
-                           const SettingsSources& sources, SettingsReport& report) {
+                           const SettingsSources& sources, SettingsNotes& report) {
   SettingsInProgress settings(sources);
   settings.ApplyCalibration(calibration, source);
   settings.ApplyOverrides();
@@ -301,7 +301,7 @@ SystemOptions MakeSettings(const CameraCalibration& calibration, const std::stri
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides,
                            std::vector<std::string>* warnings) {
-  SettingsReport report;
+  SettingsNotes report;
   SystemOptions options = MakeSettings(calibration, source, {.overrides = overrides}, report);
   if (warnings != nullptr) {
     *warnings = std::move(report.warnings);

@@ -107,16 +107,20 @@ bool IsStereoKey(std::string_view key) {
          key == kPose;
 }
 
-std::shared_ptr<const StereoRectifier> MakeRectifier(const fs::path& file,
-                                                     const PinholeCamera& camera) {
+std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {
   const YamlMap settings(file, "settings");
   const bool is_orb2 = settings.Has("LEFT.K") || settings.Has("RIGHT.K");
   const bool is_orb3 = settings.Has("Camera2.fx") || settings.Has(kPose);
   if (!is_orb2 && !is_orb3) {
-    return nullptr;
+    return std::nullopt;
   }
-  return std::make_shared<const StereoRectifier>(
-      is_orb2 ? PairOfOrb2(settings) : PairOfOrb3(settings, camera), file.string());
+  return is_orb2 ? PairOfOrb2(settings) : PairOfOrb3(settings, camera);
+}
+
+std::shared_ptr<const StereoRectifier> MakeRectifier(const fs::path& file,
+                                                     const PinholeCamera& camera) {
+  const std::optional<StereoCalibration> pair = ReadStereoPair(file, camera);
+  return pair ? std::make_shared<const StereoRectifier>(*pair, file.string()) : nullptr;
 }
 
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "hullslam/camera/pinhole.h"
@@ -14,12 +15,16 @@ namespace hullslam {
 // reads.
 bool IsStereoKey(std::string_view key);
 
-// The rectifier of a settings file that describes both cameras as they are:
+// The pair of a settings file that describes both cameras as they are:
 // - of ORB-SLAM2: LEFT.K, LEFT.D, LEFT.R, LEFT.P, LEFT.width, LEFT.height, and the same for RIGHT;
 // - of ORB-SLAM3: Camera2.fx and so on beside `camera`, the left one, with Stereo.T_c1_c2, the pose
 //   of the second camera in the first one.
-// Null for a file that describes rectified images by one camera with Camera.bf. Throws InputError
+// Absent in a file that describes rectified images by one camera with Camera.bf. Throws InputError
 // with file, line and key.
+std::optional<StereoCalibration> ReadStereoPair(const std::filesystem::path& file,
+                                                const PinholeCamera& camera);
+
+// The rectifier of that pair; null without one.
 std::shared_ptr<const StereoRectifier> MakeRectifier(const std::filesystem::path& file,
                                                      const PinholeCamera& camera);
 

@@ -176,21 +176,6 @@ std::vector<double> YamlMap::Numbers(std::string_view key, const YAML::Node& lis
   return numbers;
 }
 
-std::vector<std::string> YamlMap::Texts(std::string_view key, size_t count,
-                                        std::string_view names) const {
-  const YAML::Node list = Find(key);
-  std::vector<std::string> texts;
-  if (list.IsSequence()) {
-    for (const YAML::Node& element : list) {
-      texts.push_back(element.IsScalar() ? element.Scalar() : std::string());
-    }
-  }
-  if (texts.size() != count || std::ranges::count(texts, std::string()) > 0) {
-    Fail(key, fmt::format("is not a list of {}: {}", count, names));
-  }
-  return texts;
-}
-
 int YamlMap::Pixels(std::string_view key, double value) const {
   constexpr double kMost = 1e6;
   if (value != std::floor(value) || value < 1.0 || value > kMost) {
@@ -205,18 +190,6 @@ YamlMap YamlMap::Map(std::string_view key) const {
     Fail(key, "is not a map");
   }
   return {*this, key, node};
-}
-
-std::vector<YamlMap> YamlMap::Maps(std::string_view key) const {
-  const YAML::Node node = Find(key);
-  std::vector<YamlMap> maps;
-  for (const YAML::Node& element : node) {
-    if (!node.IsSequence() || !element.IsMap()) {
-      Fail(key, "is not a list of maps");
-    }
-    maps.push_back(YamlMap(*this, key, element));
-  }
-  return maps;
 }
 
 }  // namespace hullslam

@@ -40,10 +40,8 @@ class YamlMap {
   // `names` says in messages what the numbers are.
   std::vector<double> Numbers(std::string_view key, size_t count, std::string_view names) const;
   std::vector<double> Numbers(std::string_view key) const;  // as many as there are
-  std::vector<std::string> Texts(std::string_view key, size_t count, std::string_view names) const;
-  int Pixels(std::string_view key, double value) const;  // a whole number from 1 to 1e6
+  int Pixels(std::string_view key, double value) const;     // a whole number from 1 to 1e6
   YamlMap Map(std::string_view key) const;
-  std::vector<YamlMap> Maps(std::string_view key) const;  // a list of maps
 
   // Throws InputError "FILE:LINE: KEY what".
   [[noreturn]] void Fail(std::string_view key, std::string_view what) const;

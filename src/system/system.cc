@@ -128,9 +128,10 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
 }
 
 TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& second,
-                           std::vector<InstanceMask> masks) {
+                           std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks) {
   const bool is_stereo = options_.sensor == SensorKind::kStereo;
   ImageInput input{timestamp, ToGrey(image, options_.rgb_order), cv::Mat(), std::move(masks)};
+  input.right_masks = std::move(right_masks);
   if (!second.empty()) {
     (is_stereo ? input.right : input.depth) =
         is_stereo ? ToGrey(second, options_.rgb_order) : second;
@@ -144,7 +145,9 @@ TrackedFrame System::Track(const ImageInput& image) {
 }
 
 BuiltFrame System::Build(const ImageInput& image) {
-  ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
+  for (const auto* const masks : {&image.masks, &image.right_masks}) {
+    ValidateMasks(*masks, options_.camera.width, options_.camera.height);
+  }
   return frame_builder_->Build(image, *runner_, awaits_masks_);
 }
 

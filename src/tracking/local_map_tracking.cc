@@ -24,10 +24,10 @@ namespace {
 constexpr double kFrontalShare = 2.5 / 4.0;
 constexpr double kCosFrontal = 0.998;
 
-// The search window of a landmark. Null if the camera cannot recognise it (ViewLandmark).
+// The search window of a landmark. Null if the camera cannot recognise it (ProjectLandmark).
 std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
                                          const Landmark& landmark) {
-  const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
+  const std::optional<LandmarkProjection> view = ProjectLandmark(sensor, cam_from_world, landmark);
   if (!view) {
     return std::nullopt;
   }

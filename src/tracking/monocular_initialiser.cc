@@ -25,7 +25,7 @@ constexpr size_t kMinFeatures = 100;
 constexpr size_t kMinMatches = 80;
 constexpr size_t kMostReferences = 12;
 constexpr double kReferenceInterval = 0.1;  // s from one reference to the next
-constexpr size_t kViewsBetween = 3;         // most frames between the first and the last view
+constexpr size_t kFramesBetween = 3;        // most frames between the first and the last view
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
 // If the keypoints have moved by less than this share of the image's width, the images have too
 // little parallax, and no motion is estimated.
@@ -98,8 +98,8 @@ InitialMap MakeMap(const FramePointer& first, const FramePointer& last,
 // Adds a frame that was taken between the views of a map, in the order of time, if the map explains
 // the frame. Returns false only if the map contradicts the frame; a frame that shows too little of
 // the map is not added and does not count.
-bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& frame,
-                    InitialMap& map) {
+bool AddFrameBetween(const Sensor& sensor, uint64_t seed, const FramePointer& frame,
+                     InitialMap& map) {
   const Frame& first = *map.views.front().frame;
   std::vector<uint32_t> keypoints;
   for (const InitialMap::Point& point : map.points) {
@@ -205,7 +205,7 @@ int CountObservations(const InitialMap& map) {
 // map stays as it is.
 void CorrectShutterOf(const Sensor& sensor, InitialMap& map) {
   InitialMap corrected = map;
-  if (!CorrectViews(sensor, corrected)) {
+  if (!CorrectFrames(sensor, corrected)) {
     return;
   }
   AdjustMap(sensor, corrected);
@@ -269,10 +269,10 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   }
   InitialMap map = MakeMap(first, frame, matches, motion);
   const size_t between = references_.size() - reference - 1;
-  const size_t count = std::min(between, kViewsBetween);
+  const size_t count = std::min(between, kFramesBetween);
   for (size_t i = 1; i <= count; ++i) {
     const FramePointer& other = references_[reference + i * between / count];
-    if (!AddViewBetween(sensor_, seed_, other, map)) {
+    if (!AddFrameBetween(sensor_, seed_, other, map)) {
       return fail(InitialisationFailure::kNotConfirmed);
     }
   }

@@ -6,7 +6,7 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/frame/instance_mask.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "objects/validity.h"
 #include "util/sort_unique.h"
 
@@ -30,13 +30,13 @@ std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detec
 
 std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
                                     const IdSet<LandmarkId>& known, const ObjectOptions& options) {
-  const std::vector<ObjectView> views =
-      CollectViews(map, object, static_cast<size_t>(options.guide.views));
+  const std::vector<ResolvedObservation> views =
+      ResolveObservations(map, object, static_cast<size_t>(options.guide.views));
   if (views.empty()) {
     return {};
   }
   std::vector<LandmarkId> landmarks;
-  for (const ObjectView& view : views) {
+  for (const ResolvedObservation& view : views) {
     const Keyframe& keyframe = map.keyframes().At(view.keyframe);
     for (const uint32_t keypoint : view.detection->keypoints) {
       const LandmarkId landmark = keyframe.landmarks[keypoint];

@@ -162,7 +162,7 @@ class Finder {
     std::vector<LandmarkId> ids;
     for (const LandmarkId id : landmarks) {
       const Landmark& landmark = map_.landmarks().At(id);
-      const auto view = ViewLandmark(context_.sensor, cam_from_world, landmark);
+      const auto view = ProjectLandmark(context_.sensor, cam_from_world, landmark);
       if (!view) {
         continue;
       }

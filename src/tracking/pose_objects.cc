@@ -10,6 +10,11 @@
 namespace hullslam {
 namespace {
 
+Rigid3 RightCamera(const Sensor& sensor, Rigid3 cam_from_world) {
+  cam_from_world.translation.x() -= sensor.baseline();
+  return cam_from_world;
+}
+
 // The lines whose excess is known, moved by the excess. Empty if these are fewer than half of the
 // lines.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
@@ -66,9 +71,12 @@ PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& f
     if (options.misfit_compensation && TakesLines(options.pose.constraint.residual)) {
       pose_object.lines =
           KnownLines(sensor, cam_from_world, object, detection.lines, options.misfit);
+      pose_object.right_lines = KnownLines(sensor, RightCamera(sensor, cam_from_world), object,
+                                           detection.right_lines, options.misfit);
     }
     if (pose_object.lines.empty()) {
       pose_object.lines = detection.lines;
+      pose_object.right_lines = detection.right_lines;
       pose_object.misfit_px = object.misfit_px;
     }
     found.ids.push_back(ids[i]);

@@ -200,7 +200,7 @@ CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
                         as_read->timestamp}};
 }
 
-bool CorrectViews(const Sensor& sensor, InitialMap& map) {
+bool CorrectFrames(const Sensor& sensor, InitialMap& map) {
   if (sensor.readout_time == 0.0) {
     return false;
   }

@@ -60,6 +60,6 @@ CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
 // the view before it to the view after it. If one of the velocities is not known, no view is
 // corrected, because corrected views and others do not fit together. Returns whether the views are
 // corrected.
-bool CorrectViews(const Sensor& sensor, InitialMap& map);
+bool CorrectFrames(const Sensor& sensor, InitialMap& map);
 
 }  // namespace hullslam

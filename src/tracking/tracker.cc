@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/view_overlap.h"
+#include "tracking/image_overlap.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@ namespace hullslam {
 
 std::string AddGroundtruth(const Trajectory& groundtruth, AlignmentKind alignment,
                            ViewModel& model) {
-  const AteReport report = EvaluateAte(groundtruth, model.trajectory, {.alignment = alignment});
+  const AteResult report = EvaluateAte(groundtruth, model.trajectory, {.alignment = alignment});
   if (!report.ok()) {
     return report.failure;
   }

@@ -42,7 +42,7 @@ struct SeenShapes {
   std::optional<ViewShape> ellipse;
 };
 
-SeenShapes ShapesOf(const ReportedObject& object, const ReportedView& view,
+SeenShapes ShapesOf(const ObjectResult& object, const ObservationResult& view,
                     const PinholeCamera& camera) {
   SeenShapes shapes;
   shapes.outline = {object.id, object.label,
@@ -95,31 +95,32 @@ cv::Rect CutoutBox(const std::vector<Eigen::Vector2d>& outline, const cv::Size& 
   return around & cv::Rect(cv::Point(), size);
 }
 
-Eigen::Vector3d DirectionOf(const ReportedObject& object, const ReportedView& view) {
+Eigen::Vector3d DirectionOf(const ObjectResult& object, const ObservationResult& view) {
   return (Inverse(view.cam_from_world).translation - object.ellipsoid.world_from_object.translation)
       .normalized();
 }
 
 // A view is good if the mask is large, surely of its class, and not cut by the border.
-double Goodness(const ReportedView& view) {
+double Goodness(const ObservationResult& view) {
   return SignedArea(view.hull) * view.score * (view.is_cut ? 0.1 : 1.0);
 }
 
 // The best views, the best one first. Views from nearly the same side are only taken if there are
 // no others.
-std::vector<const ReportedView*> BestViews(const ReportedObject& object) {
+std::vector<const ObservationResult*> BestObservations(const ObjectResult& object) {
   const double similar = std::cos(12.0 / 180.0 * std::numbers::pi);
-  std::vector<const ReportedView*> sorted;
-  for (const ReportedView& view : object.views) {
+  std::vector<const ObservationResult*> sorted;
+  for (const ObservationResult& view : object.observations) {
     sorted.push_back(&view);
   }
-  std::stable_sort(sorted.begin(), sorted.end(), [](const ReportedView* a, const ReportedView* b) {
-    return Goodness(*a) > Goodness(*b);
-  });
-  std::vector<const ReportedView*> best;
-  std::vector<const ReportedView*> others;
-  for (const ReportedView* view : sorted) {
-    const bool is_new = std::none_of(best.begin(), best.end(), [&](const ReportedView* taken) {
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const ObservationResult* a, const ObservationResult* b) {
+                     return Goodness(*a) > Goodness(*b);
+                   });
+  std::vector<const ObservationResult*> best;
+  std::vector<const ObservationResult*> others;
+  for (const ObservationResult* view : sorted) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const ObservationResult* taken) {
       return DirectionOf(object, *view).dot(DirectionOf(object, *taken)) > similar;
     });
     (is_new ? best : others).push_back(view);
@@ -130,7 +131,7 @@ std::vector<const ReportedView*> BestViews(const ReportedObject& object) {
 }
 
 void AddCutoutTasks(ViewObject& shown, const PinholeCamera& camera, std::vector<ImageTask>& tasks) {
-  const std::vector<const ReportedView*> best = BestViews(shown.object);
+  const std::vector<const ObservationResult*> best = BestObservations(shown.object);
   shown.cutouts.resize(best.size());
   for (size_t i = 0; i < best.size(); ++i) {
     tasks.push_back(
@@ -208,7 +209,7 @@ std::vector<ImageTask> PictureTasks(size_t most, ViewModel& model) {
     tasks.push_back({stamp, [&model, &camera, stamp](const cv::Mat& image) {
                        std::vector<SeenShapes> shapes;
                        for (const ViewObject& shown : model.objects) {
-                         for (const ReportedView& view : shown.object.views) {
+                         for (const ObservationResult& view : shown.object.observations) {
                            if (std::abs(view.timestamp - stamp) < kSameMoment) {
                              shapes.push_back(ShapesOf(shown.object, view, camera));
                            }

@@ -198,7 +198,7 @@ nlohmann::json PictureJson(const ViewPicture& picture, double start) {
 }
 
 nlohmann::json ObjectJson(const ViewObject& shown, double start) {
-  const ReportedObject& object = shown.object;
+  const ObjectResult& object = shown.object;
   const Eigen::Vector3d& centre = object.ellipsoid.world_from_object.translation;
   const Eigen::Vector4d rotation = object.ellipsoid.world_from_object.rotation.coeffs();
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
@@ -220,7 +220,7 @@ nlohmann::json ObjectJson(const ViewObject& shown, double start) {
           {"misfit_px", object.misfit_px},
           {"parallax_deg", ParallaxOf(object)},
           {"quality", QualityOf(object)},
-          {"observations", object.views.size()},
+          {"observations", object.observations.size()},
           {"cutouts", PicturesJson(shown.cutouts, start)}};
 }
 

@@ -13,7 +13,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/id.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "scene/scene.h"
 
 namespace hullslam {
@@ -57,7 +57,7 @@ struct ViewPicture {
 };
 
 struct ViewObject {
-  ReportedObject object;
+  ObjectResult object;
   std::string reason;                // why it is not mapped; empty if it is, or if unknown
   std::vector<ViewPicture> cutouts;  // the best views, the best one first
 };

@@ -11,7 +11,7 @@
 
 #include "eval/object_metrics.h"
 #include "map/located_landmarks.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "objects/validity.h"
 
 namespace hullslam {
@@ -41,7 +41,7 @@ std::string ReasonOf(const Map& map, const ObjectLandmark& object, const Sensor&
     return fmt::format("{} keyframes, expected at least {}", object.observations.size(),
                        options.start.min_views);
   }
-  const std::vector<ObjectView> views = CollectViews(map, object);
+  const std::vector<ResolvedObservation> views = ResolveObservations(map, object);
   const auto objection = object.has_shape
                              ? FindObjection(object.ellipsoid, sensor, views, options.validity)
                              : std::nullopt;
@@ -104,9 +104,9 @@ ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& o
   ViewModel model;
   model.camera = sensor.camera;
   model.is_metric = !sensor.IsMonocular();
-  ObjectReport report = ReportObjects(map, sensor.camera);
+  ObjectResults report = CollectObjectResults(map, sensor.camera);
   MeasureObjects(report);
-  for (ReportedObject& object : report.objects) {
+  for (ObjectResult& object : report.objects) {
     model.objects.push_back({std::move(object), {}, {}});
   }
   AddMap(map, sensor, options, model);

@@ -75,12 +75,12 @@ void AddLandmarks(const FinishedRun& run, ViewModel& model) {
 
 void AddObjects(const FinishedRun& run, ViewModel& model) {
   AddPart("objects", model, [&] {
-    std::optional<ObjectReport> report = run.ReadObjectReport();
+    std::optional<ObjectResults> report = run.ReadObjectResults();
     if (!report) {
       return;
     }
     model.camera = report->camera;
-    for (ReportedObject& object : report->objects) {
+    for (ObjectResult& object : report->objects) {
       model.objects.push_back({std::move(object), {}, {}});
     }
   });

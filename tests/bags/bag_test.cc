@@ -22,7 +22,7 @@ const std::vector<MadeMessage> kMessages = {
 void ExpectMessages(Bag& bag, const std::string& what) {
   struct Visited {
     MadeMessage message;
-    MessagePlace place;
+    MessagePosition place;
   };
   std::vector<Visited> visited;
   bag.Scan([&](const BagMessage& message) {

@@ -34,12 +34,12 @@ Trajectory Moved(const Trajectory& trajectory, const Rigid3& motion, double scal
 TEST(Ate, IsInvariantUnderTheTransformsOfTheAlignment) {
   const Trajectory reference = Helix(50);
   const Rigid3 motion(ExpSo3({1.0, -0.5, 2.0}), {3.0, 4.0, -5.0});
-  const AteReport rigid = EvaluateAte(reference, Moved(reference, motion, 1.0));
+  const AteResult rigid = EvaluateAte(reference, Moved(reference, motion, 1.0));
   ASSERT_TRUE(rigid.ok()) << rigid.failure;
   EXPECT_LT(rigid.errors.max, 1e-9);
   const Trajectory scaled = Moved(reference, motion, 0.5);
   EXPECT_GT(EvaluateAte(reference, scaled).errors.rmse, 0.1);
-  const AteReport similar = EvaluateAte(reference, scaled, {.alignment = AlignmentKind::kSim3});
+  const AteResult similar = EvaluateAte(reference, scaled, {.alignment = AlignmentKind::kSim3});
   EXPECT_LT(similar.errors.max, 1e-9);
   EXPECT_NEAR(similar.reference_from_estimate.scale, 2.0, 1e-9);
 }
@@ -51,7 +51,7 @@ TEST(Ate, ScaleDriftIsThatOfTheLastTenthOverTheFirst) {
   for (size_t i = 100; i < estimate.size(); ++i) {
     estimate[i].world_from_cam.translation *= 1.25;
   }
-  const AteReport report = EvaluateAte(reference, estimate, {.alignment = AlignmentKind::kSim3});
+  const AteResult report = EvaluateAte(reference, estimate, {.alignment = AlignmentKind::kSim3});
   ASSERT_TRUE(report.scale_drift);
   EXPECT_NEAR(*report.scale_drift, 0.25, 1e-9);
   EXPECT_FALSE(EvaluateAte(reference, estimate).scale_drift) << "only with kSim3";
@@ -62,7 +62,7 @@ TEST(Ate, ScaleDriftIsThatOfTheLastTenthOverTheFirst) {
 TEST(Ate, WithoutAlignmentIsTheDistanceOfThePositions) {
   const Trajectory reference = Helix(10);
   const Trajectory shifted = Moved(reference, Rigid3({1, 0, 0, 0}, {0.0, 3.0, 4.0}), 1.0);
-  const AteReport report = EvaluateAte(reference, shifted, {.alignment = AlignmentKind::kNone});
+  const AteResult report = EvaluateAte(reference, shifted, {.alignment = AlignmentKind::kNone});
   EXPECT_NEAR(report.errors.rmse, 5.0, 1e-12);
   EXPECT_NEAR(report.errors.median, 5.0, 1e-12);
 }
@@ -73,7 +73,7 @@ TEST(Ate, ReportsPairsAndCoverage) {
   for (int i = 0; i < 5; ++i) {
     estimate.push_back({100.0 + i, Rigid3()});
   }
-  const AteReport report = EvaluateAte(reference, estimate);
+  const AteResult report = EvaluateAte(reference, estimate);
   EXPECT_EQ(report.pairs, 20U);
   EXPECT_EQ(report.reference_poses, 50U);
   EXPECT_EQ(report.estimate_poses, 25U);
@@ -103,7 +103,7 @@ TEST(Ate, AFewPairsByChanceAreNoEvaluation) {
   }
   EXPECT_TRUE(EvaluateAte(reference, estimate).ok());
   reference.pop_back();
-  const AteReport few = EvaluateAte(reference, estimate);
+  const AteResult few = EvaluateAte(reference, estimate);
   EXPECT_EQ(few.pairs, 9U);
   EXPECT_NE(few.failure.find("only 9 of the 100 poses"), std::string::npos) << few.failure;
 }
@@ -146,8 +146,8 @@ TEST_P(GoldenAte, IsReproduced) {
   }
   const Trajectory reference = ReadTrajectory(*reference_path);
   const Trajectory estimate = ReadTrajectory(*estimate_path);
-  const AteReport rigid = EvaluateAte(reference, estimate, {.pairing = golden.pairing});
-  const AteReport similar = EvaluateAte(
+  const AteResult rigid = EvaluateAte(reference, estimate, {.pairing = golden.pairing});
+  const AteResult similar = EvaluateAte(
       reference, estimate, {.alignment = AlignmentKind::kSim3, .pairing = golden.pairing});
   EXPECT_EQ(rigid.pairs, golden.pairs);
   EXPECT_NEAR(rigid.errors.rmse, golden.rmse_se3, 1e-6);

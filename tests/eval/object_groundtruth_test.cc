@@ -19,8 +19,8 @@ TrueObject MakeTruth(const Eigen::Vector3d& center, const std::string& label = "
   return truth;
 }
 
-ReportedObject MakeObject(uint32_t id, const Ellipsoid& ellipsoid) {
-  ReportedObject object;
+ObjectResult MakeObject(uint32_t id, const Ellipsoid& ellipsoid) {
+  ObjectResult object;
   object.id = ObjectId(id);
   object.state = ObjectState::kMapped;
   object.ellipsoid = ellipsoid;
@@ -38,7 +38,7 @@ TEST(ObjectGroundtruth, APerfectlyMappedObjectHasNoErrorInAnyWorldFrame) {
   RandomGeometry random(5);
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
   const Rigid3 truth_from_map = random.Pose(2.0, 10.0);
-  ObjectReport report;
+  ObjectResults report;
   report.objects = {MakeObject(4, Inverse(truth_from_map) * MappedAs(truths[1]))};
   const GroundtruthComparison comparison = CompareWithTruth(truths, report, Sim3(truth_from_map));
   ASSERT_EQ(comparison.errors.size(), 1U);
@@ -60,7 +60,7 @@ TEST(ObjectGroundtruth, ErrorsAreInMetresInAMapOfAnyUnit) {
   const Sim3 truth_from_map(2.5, pose.rotation, pose.translation);
   Ellipsoid mapped = MappedAs(truths[1], {0.0, 0.02, 0.0});
   mapped.half_axes = {0.11, 0.2, 0.27};
-  ObjectReport report;
+  ObjectResults report;
   report.objects = {MakeObject(4, Inverse(truth_from_map) * mapped)};
   const ObjectError error = CompareWithTruth(truths, report, truth_from_map).errors.at(0);
   EXPECT_EQ(error.truth, 1U);
@@ -72,7 +72,7 @@ TEST(ObjectGroundtruth, ErrorsAreInMetresInAMapOfAnyUnit) {
 
 TEST(ObjectGroundtruth, ErrorsMatchHandComputedValues) {
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
-  ObjectReport report;
+  ObjectResults report;
   Ellipsoid mapped = MappedAs(truths[0], {0.0, 0.02, 0.0});
   mapped.half_axes = {0.11, 0.2, 0.27};
   report.objects = {MakeObject(0, mapped)};
@@ -87,7 +87,7 @@ TEST(ObjectGroundtruth, ErrorsMatchHandComputedValues) {
 // with axes of the same lengths.
 TEST(ObjectGroundtruth, TheOrderOfTheAxesDoesNotMatterButTheirDirectionsDo) {
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
-  ObjectReport report;
+  ObjectResults report;
   Ellipsoid mapped = MappedAs(truths[0]);
   const double quarter = 0.5 * std::numbers::pi;
   const Rigid3 turn(ExpSo3({0.0, 0.0, quarter}), Eigen::Vector3d::Zero());
@@ -107,7 +107,7 @@ TEST(ObjectGroundtruth, CountsObjectsMappedTwiceMissedAndInvented) {
   TrueObject walker = MakeTruth({3, 0, 0}, "person");
   walker.is_dynamic = true;
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}), walker};
-  ObjectReport report;
+  ObjectResults report;
   report.objects = {
       MakeObject(0, MappedAs(truths[0], {0.1, 0.0, 0.0})),   // farther
       MakeObject(1, MappedAs(truths[0], {0.0, 0.05, 0.0})),  // nearer
@@ -147,7 +147,7 @@ TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearestMappedObjects) {
                                     MakeTruth({2, 0, 0})};
   truths[0].shape = truths[1].shape = "ellipsoid";
   truths[2].shape = "box";
-  ObjectReport report;
+  ObjectResults report;
   Ellipsoid larger = MappedAs(truths[1], {0.04, 0.0, 0.0});
   larger.half_axes *= 1.2;
   report.objects = {MakeObject(0, MappedAs(truths[0])),
@@ -199,7 +199,7 @@ TEST(ObjectGroundtruth, SightingsNeedOneCountPerTrueObject) {
 
 TEST(ObjectGroundtruth, ObjectsWithoutOverlapAreNotInItsMean) {
   std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
-  ObjectReport report;
+  ObjectResults report;
   report.objects = {MakeObject(0, MappedAs(truths[0])), MakeObject(1, MappedAs(truths[1]))};
   report.objects[1].fit.siou = 0.8;
   const auto shapes = SummarizeByShape(truths, CompareWithTruth(truths, report, {}));

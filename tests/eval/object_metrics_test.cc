@@ -39,20 +39,20 @@ std::vector<SilhouetteLine> LinesAround(const Ellipse& ellipse, int count, doubl
   return lines;
 }
 
-// The view that a perfect segmenter has of the ellipsoid.
-ReportedView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
+// The observation that a perfect segmenter has of the ellipsoid.
+ObservationResult PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
   const Ellipse ellipse = ProjectEllipsoid(Camera().Matrix(), cam_from_world, ellipsoid).value();
-  ReportedView view;
-  view.cam_from_world = cam_from_world;
-  view.hull = ellipse.Polygon(200);
-  view.contour = view.hull;
-  view.lines = LinesAround(ellipse, 9, 0.0);
-  return view;
+  ObservationResult observation;
+  observation.cam_from_world = cam_from_world;
+  observation.hull = ellipse.Polygon(200);
+  observation.contour = observation.hull;
+  observation.lines = LinesAround(ellipse, 9, 0.0);
+  return observation;
 }
 
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ObservationResult& observation,
                       const PinholeCamera& camera) {
-  return MeasureObject(ellipsoid, {&view, 1}, camera);
+  return MeasureObject(ellipsoid, {&observation, 1}, camera);
 }
 
 TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
@@ -69,46 +69,46 @@ TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
 TEST(ObjectMetrics, TangentDistanceIsPositiveOnBothSides) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
   const Ellipse ellipse = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value();
-  ReportedView view = PerfectView(sphere);
-  view.lines = LinesAround(ellipse, 4, 3.0);
-  EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 3.0, 1e-9);
-  view.lines = LinesAround(ellipse, 4, -5.0);
-  EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 5.0, 1e-9);
+  ObservationResult observation = PerfectView(sphere);
+  observation.lines = LinesAround(ellipse, 4, 3.0);
+  EXPECT_NEAR(MeasureView(sphere, observation, Camera()).tangent_px.value(), 3.0, 1e-9);
+  observation.lines = LinesAround(ellipse, 4, -5.0);
+  EXPECT_NEAR(MeasureView(sphere, observation, Camera()).tangent_px.value(), 5.0, 1e-9);
 }
 
 // A plane through the centre of a sphere of radius r has pi^T Q* pi = r^2. A plane at distance d
 // from the centre has r^2 - d^2.
 TEST(ObjectMetrics, MtdMatchesHandComputedValues) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ReportedView view = PerfectView(sphere);
-  view.lines = {{{Eigen::Vector2d::UnitX(), -320.0}, false}};  // x = cx: the plane x = 0
-  EXPECT_NEAR(MeasureView(sphere, view, Camera()).mtd_m2.value(), 0.09, 1e-12);
+  ObservationResult observation = PerfectView(sphere);
+  observation.lines = {{{Eigen::Vector2d::UnitX(), -320.0}, false}};  // x = cx: the plane x = 0
+  EXPECT_NEAR(MeasureView(sphere, observation, Camera()).mtd_m2.value(), 0.09, 1e-12);
   // x = cx + fx: the plane x = z, sqrt(2) from the centre.
-  view.lines = {{{Eigen::Vector2d::UnitX(), -820.0}, false}};
-  EXPECT_NEAR(MeasureView(sphere, view, Camera()).mtd_m2.value(), 2.0 - 0.09, 1e-12);
+  observation.lines = {{{Eigen::Vector2d::UnitX(), -820.0}, false}};
+  EXPECT_NEAR(MeasureView(sphere, observation, Camera()).mtd_m2.value(), 2.0 - 0.09, 1e-12);
 }
 
 TEST(ObjectMetrics, OneSidedLinesAreNotCounted) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ReportedView view = PerfectView(sphere);
-  view.lines.push_back({{Eigen::Vector2d::UnitX(), 1000.0}, true});
-  EXPECT_LT(MeasureView(sphere, view, Camera()).tangent_px.value(), 1e-9);
-  EXPECT_EQ(MeasureView(sphere, view, Camera()).lines, 9U);
-  view.lines = {view.lines.back()};
-  EXPECT_FALSE(MeasureView(sphere, view, Camera()).tangent_px);
-  EXPECT_FALSE(MeasureView(sphere, view, Camera()).mtd_m2);
+  ObservationResult observation = PerfectView(sphere);
+  observation.lines.push_back({{Eigen::Vector2d::UnitX(), 1000.0}, true});
+  EXPECT_LT(MeasureView(sphere, observation, Camera()).tangent_px.value(), 1e-9);
+  EXPECT_EQ(MeasureView(sphere, observation, Camera()).lines, 9U);
+  observation.lines = {observation.lines.back()};
+  EXPECT_FALSE(MeasureView(sphere, observation, Camera()).tangent_px);
+  EXPECT_FALSE(MeasureView(sphere, observation, Camera()).mtd_m2);
 }
 
 TEST(ObjectMetrics, IsInvariantUnderACommonMotionOfWorldAndCamera) {
   RandomGeometry random(3);
   const Ellipsoid ellipsoid = {random.Pose(1.0, 0.2), {0.1, 0.2, 0.3}};
   const Rigid3 cam_from_world(ExpSo3({0.1, 0.2, 0.3}), {0.0, 0.1, 2.0});
-  ReportedView view = PerfectView(ellipsoid, cam_from_world);
+  ObservationResult observation = PerfectView(ellipsoid, cam_from_world);
   const Ellipsoid larger = {ellipsoid.world_from_object, 1.2 * ellipsoid.half_axes};
-  const ObjectFit before = MeasureView(larger, view, Camera());
+  const ObjectFit before = MeasureView(larger, observation, Camera());
   const Rigid3 motion = random.Pose(2.0, 5.0);
-  view.cam_from_world = cam_from_world * Inverse(motion);
-  const ObjectFit after = MeasureView(motion * larger, view, Camera());
+  observation.cam_from_world = cam_from_world * Inverse(motion);
+  const ObjectFit after = MeasureView(motion * larger, observation, Camera());
   EXPECT_LT(before.siou.value(), 0.8);
   EXPECT_NEAR(after.siou.value(), before.siou.value(), 1e-9);
   EXPECT_NEAR(after.siou_mask.value(), before.siou_mask.value(), 1e-9);
@@ -119,9 +119,9 @@ TEST(ObjectMetrics, IsInvariantUnderACommonMotionOfWorldAndCamera) {
 TEST(ObjectMetrics, OnlyThePartInsideTheImageIsCompared) {
   Ellipsoid sphere = Sphere(2.0, 0.3);
   sphere.world_from_object.translation.x() = 1.28;  // at the right border, x = 640
-  const ReportedView whole = PerfectView(sphere);
+  const ObservationResult whole = PerfectView(sphere);
   EXPECT_GT(MeasureView(sphere, whole, Camera()).siou.value(), 0.999);
-  ReportedView cut = whole;
+  ObservationResult cut = whole;
   cut.hull = ClipToBox(whole.hull, {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(639.5, 479.5)});
   cut.contour = cut.hull;
   EXPECT_GT(MeasureView(sphere, cut, Camera()).siou.value(), 0.99);
@@ -130,35 +130,38 @@ TEST(ObjectMetrics, OnlyThePartInsideTheImageIsCompared) {
 
 TEST(ObjectMetrics, AContourMayBeConcaveAndOfEitherOrientation) {
   const Ellipsoid all_over = Sphere(2.0, 1.9);  // its projected ellipse covers the whole image
-  ReportedView view;
-  view.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
+  ObservationResult observation;
+  observation.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
   // The lower left quarter of the square is cut out.
-  view.contour = {{100, 100}, {300, 100}, {300, 300}, {200, 300}, {200, 200}, {100, 200}};
+  observation.contour = {{100, 100}, {300, 100}, {300, 300}, {200, 300}, {200, 200}, {100, 200}};
   const PinholeCamera::Bounds image = Camera().UndistortedBounds();
   const double pixels = (image.max_x - image.min_x) * (image.max_y - image.min_y);
-  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou.value(), 40000.0 / pixels, 1e-6);
-  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou_mask.value(), 30000.0 / pixels, 1e-6);
-  std::reverse(view.contour.begin(), view.contour.end());
-  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou_mask.value(), 30000.0 / pixels, 1e-6);
+  EXPECT_NEAR(MeasureView(all_over, observation, Camera()).siou.value(), 40000.0 / pixels, 1e-6);
+  EXPECT_NEAR(MeasureView(all_over, observation, Camera()).siou_mask.value(), 30000.0 / pixels,
+              1e-6);
+  std::reverse(observation.contour.begin(), observation.contour.end());
+  EXPECT_NEAR(MeasureView(all_over, observation, Camera()).siou_mask.value(), 30000.0 / pixels,
+              1e-6);
 }
 
 TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheEllipse) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ReportedView view = PerfectView(sphere);
+  ObservationResult observation = PerfectView(sphere);
   const Eigen::AlignedBox2d box = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value().Bounds();
-  view.hull = {
+  observation.hull = {
       box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}};
-  view.contour = view.hull;
-  EXPECT_NEAR(MeasureView(sphere, view, Camera()).siou.value(), std::numbers::pi / 4.0, 0.01);
-  view.is_box = true;
-  EXPECT_GT(MeasureView(sphere, view, Camera()).siou.value(), 0.99);
-  EXPECT_FALSE(MeasureView(sphere, view, Camera()).siou_mask);
+  observation.contour = observation.hull;
+  EXPECT_NEAR(MeasureView(sphere, observation, Camera()).siou.value(), std::numbers::pi / 4.0,
+              0.01);
+  observation.is_box = true;
+  EXPECT_GT(MeasureView(sphere, observation, Camera()).siou.value(), 0.99);
+  EXPECT_FALSE(MeasureView(sphere, observation, Camera()).siou_mask);
 }
 
 TEST(ObjectMetrics, AnEllipsoidNotInFrontHasNoOverlapAndNoDistance) {
-  const ReportedView view = PerfectView(Sphere(2.0, 0.3));
+  const ObservationResult observation = PerfectView(Sphere(2.0, 0.3));
   for (const double depth : {-2.0, 0.1}) {
-    const ObjectFit fit = MeasureView(Sphere(depth, 0.3), view, Camera());
+    const ObjectFit fit = MeasureView(Sphere(depth, 0.3), observation, Camera());
     EXPECT_EQ(fit.siou.value(), 0.0);
     EXPECT_EQ(fit.siou_mask.value(), 0.0);
     EXPECT_FALSE(fit.mtd_m2);
@@ -168,21 +171,21 @@ TEST(ObjectMetrics, AnEllipsoidNotInFrontHasNoOverlapAndNoDistance) {
 
 TEST(ObjectMetrics, MeansAreOverViewsAndThenOverMappedObjects) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  const ReportedView good = PerfectView(sphere);
-  ReportedView missed = good;
+  const ObservationResult good = PerfectView(sphere);
+  ObservationResult missed = good;
   missed.hull = {{0, 0}, {20, 0}, {20, 20}};
   missed.lines.clear();
-  ObjectReport report;
+  ObjectResults report;
   report.camera = Camera();
   report.objects.resize(3);
-  for (ReportedObject& object : report.objects) {
+  for (ObjectResult& object : report.objects) {
     object.state = ObjectState::kMapped;
     object.ellipsoid = sphere;
   }
-  report.objects[0].views = {good, missed};      // mean 1/2
-  report.objects[1].views = {good, good, good};  // 1
+  report.objects[0].observations = {good, missed};      // mean 1/2
+  report.objects[1].observations = {good, good, good};  // 1
   report.objects[2].state = ObjectState::kCandidate;
-  report.objects[2].views = {missed};
+  report.objects[2].observations = {missed};
   MeasureObjects(report);
   EXPECT_NEAR(report.objects[0].fit.siou.value(), 0.5, 1e-3);
   EXPECT_EQ(report.objects[0].fit.lines, 9U);
@@ -195,7 +198,7 @@ TEST(ObjectMetrics, MeansAreOverViewsAndThenOverMappedObjects) {
 }
 
 TEST(ObjectMetrics, AnEmptyReportHasNoMeans) {
-  const MapFit summary = SummarizeFits(ObjectReport());
+  const MapFit summary = SummarizeFits(ObjectResults());
   EXPECT_EQ(summary.objects, 0U);
   EXPECT_FALSE(summary.mean.siou);
   EXPECT_FALSE(MeasureObject(Sphere(2.0, 0.3), {}, Camera()).tangent_px);

@@ -21,7 +21,7 @@ Trajectory Drive(int count, double speed, double turn = 0.0) {
 }
 
 TEST(Rpe, MeasuresDriftInTranslation) {
-  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1));
+  const RpeResult report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1));
   ASSERT_TRUE(report.ok()) << report.failure;
   EXPECT_EQ(report.motions, 21U);
   EXPECT_NEAR(report.translation.rmse, 0.1, 1e-9);
@@ -31,7 +31,7 @@ TEST(Rpe, MeasuresDriftInTranslation) {
 
 TEST(Rpe, MeasuresDriftInRotationInDegrees) {
   const double turn = std::numbers::pi / 180.0;
-  const RpeReport report = EvaluateRpe(Drive(31, 0.0), Drive(31, 0.0, turn));
+  const RpeResult report = EvaluateRpe(Drive(31, 0.0), Drive(31, 0.0, turn));
   EXPECT_NEAR(report.rotation.rmse, 1.0, 1e-6);
   EXPECT_NEAR(report.translation.rmse, 0.0, 1e-12);
 }
@@ -57,33 +57,33 @@ TEST(Rpe, RotationsWithTheirRealPartFirstAreNoticed) {
 TEST(Rpe, IsInvariantUnderTheChoiceOfWorldFrames) {
   const Trajectory reference = Drive(31, 1.0, 0.5);
   Trajectory estimate = Drive(31, 1.2, 0.4);
-  const RpeReport before = EvaluateRpe(reference, estimate);
+  const RpeResult before = EvaluateRpe(reference, estimate);
   const Rigid3 motion(ExpSo3({1.0, 2.0, 3.0}), {10.0, -20.0, 5.0});
   for (StampedPose& pose : estimate) {
     pose.world_from_cam = motion * pose.world_from_cam;
   }
-  const RpeReport after = EvaluateRpe(reference, estimate);
+  const RpeResult after = EvaluateRpe(reference, estimate);
   EXPECT_GT(before.translation.rmse, 0.1);
   EXPECT_NEAR(before.translation.rmse, after.translation.rmse, 1e-9);
   EXPECT_NEAR(before.rotation.rmse, after.rotation.rmse, 1e-6);
 }
 
 TEST(Rpe, WithADeltaInFramesComparesNeighbours) {
-  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 2.0),
+  const RpeResult report = EvaluateRpe(Drive(31, 1.0), Drive(31, 2.0),
                                        {.unit = RpeOptions::Unit::kFrames, .delta = 1.0});
   EXPECT_EQ(report.motions, 30U);
   EXPECT_NEAR(report.translation.mean, 0.1, 1e-9);
 }
 
 TEST(Rpe, ScalesTheEstimate) {
-  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 0.5), {.scale = 2.0});
+  const RpeResult report = EvaluateRpe(Drive(31, 1.0), Drive(31, 0.5), {.scale = 2.0});
   EXPECT_NEAR(report.translation.max, 0.0, 1e-9);
 }
 
 TEST(Rpe, MotionsAcrossAGapAreLeftOut) {
   Trajectory estimate = Drive(31, 1.0);
   estimate.erase(estimate.begin() + 8, estimate.begin() + 23);  // 0.8 s to 2.2 s are missing
-  const RpeReport report = EvaluateRpe(Drive(31, 1.0), estimate);
+  const RpeResult report = EvaluateRpe(Drive(31, 1.0), estimate);
   EXPECT_FALSE(report.ok());
   EXPECT_EQ(report.motions, 0U);
 }
@@ -107,7 +107,7 @@ TEST(Rpe, TheEndOfAMotionMayBeATenthOff) {
 }
 
 TEST(Rpe, LongerMotionsDriftMore) {
-  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1), {.delta = 2.0});
+  const RpeResult report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1), {.delta = 2.0});
   EXPECT_NEAR(report.translation.median, 0.2, 1e-9);
   EXPECT_NEAR(report.translation.max, 0.2, 1e-9);
 }

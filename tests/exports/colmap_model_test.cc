@@ -27,7 +27,7 @@ class Colmap : public ::testing::Test {
 
   SyntheticWorld world_;
   SyntheticMap made_;
-  PinholeView view_;
+  ExportCamera view_;
   size_t located_ = 0;
   ColmapModel model_;
 };
@@ -67,6 +67,35 @@ TEST_F(Colmap, EveryKeypointWithAPointIsInItsTrack) {
     }
   }
   EXPECT_EQ(sightings, 0U);
+}
+
+// The world's keypoints have columns in the right image of a virtual pair.
+TEST_F(Colmap, PairsHaveASecondCamera) {
+  const LocatedLandmarks located = LocateLandmarks(made_.map, world_.sensor());
+  const std::vector<Colour> colours(located.ids.size());
+  std::vector<KeyframeImage> images;
+  for (uint32_t i = 0; i < 3; ++i) {
+    images.push_back({KeyframeId(i), {}, "image_" + std::to_string(i)});
+  }
+  const ColmapModel pairs =
+      MakeColmapModel(made_.map, located, colours, images, view_, world_.sensor().baseline());
+  ASSERT_EQ(pairs.images.size(), 6U);
+  EXPECT_EQ(pairs.images[3].name, "image_0_right.png");
+  EXPECT_EQ(pairs.images[3].id, 4U);
+  EXPECT_EQ(pairs.images[3].camera, 2U);
+  EXPECT_GT(pairs.images[3].keypoints.size(), 50U);
+  size_t in_right = 0;
+  for (const ColmapPoint& point : pairs.points) {
+    EXPECT_LT(point.error, 1e-2);
+    for (const ColmapSighting& sighting : point.track) {
+      in_right += sighting.image > 3 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(in_right, 100U);
+  const std::string cameras = FormatColmapText(pairs)[0].content;
+  EXPECT_NE(cameras.find("\n2 PINHOLE"), std::string::npos);
+  EXPECT_EQ(FormatColmapBinary(pairs)[0].content.size(),
+            2 * FormatColmapBinary(model_)[0].content.size() - 8);
 }
 
 // The observations of an image whose pose is turned by an angle have errors of 500 px times it.

@@ -35,8 +35,8 @@ std::vector<double> NumbersOf(const Rigid3& pose) {
           pose.rotation.y(),    pose.rotation.z(),    pose.rotation.w()};
 }
 
-ReportedObject Cup(ObjectState state) {
-  ReportedObject object;
+ObjectResult Cup(ObjectState state) {
+  ObjectResult object;
   object.id = ObjectId(7);
   object.state = state;
   object.label = "cup";
@@ -129,8 +129,8 @@ TEST(McapMessagesTest, PointsHaveTheirColours) {
 }
 
 TEST(McapMessagesTest, OnlyMappedObjectsAreWritten) {
-  const std::vector<ReportedObject> objects = {Cup(ObjectState::kCandidate),
-                                               Cup(ObjectState::kMapped)};
+  const std::vector<ObjectResult> objects = {Cup(ObjectState::kCandidate),
+                                             Cup(ObjectState::kMapped)};
   const std::string detections = DetectionsMessage({1, 2}, objects);
   FieldReader reader(kCdr, detections, "objects");
   ExpectHeader(reader, {1, 2}, "map");

@@ -63,7 +63,7 @@ cv::Mat DepthOfPlane(const PinholeCamera& camera, double metres, double units) {
 
 TEST(DepthImages, AreInMillimetres) {
   PinholeCamera camera = DistortedCamera();
-  const PinholeView view(camera);
+  const ExportCamera view(camera);
   cv::Mat depth = DepthOfPlane(camera, 1.5, 5000.0);
   const cv::Mat image = MakeDepthImage(depth, 5000.0, view);
   ASSERT_EQ(image.type(), CV_16UC1);
@@ -110,7 +110,7 @@ TEST(DepthImages, TenKeypointsAreNeededForTheUnits) {
 TEST(DepthImages, AreRoundedToTheNearestMillimetre) {
   const PinholeCamera camera = DistortedCamera();
   const cv::Mat depth = DepthOfPlane(camera, 1.4998, 5000.0);
-  EXPECT_EQ(MakeDepthImage(depth, 5000.0, PinholeView(camera)).at<uint16_t>(50, 50), 1500);
+  EXPECT_EQ(MakeDepthImage(depth, 5000.0, ExportCamera(camera)).at<uint16_t>(50, 50), 1500);
 }
 
 }  // namespace

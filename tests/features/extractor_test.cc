@@ -141,6 +141,7 @@ TEST(FeatureExtractor, APairHasTheFeaturesOfItsImages) {
 TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {
   const cv::Mat image = MakeCornerImage();
   FeatureOptions options;
+  options.subpixel = false;
   const ExtractedFeatures whole = FeatureExtractor(options).Extract(image);
   options.subpixel = true;
   FeatureExtractor extractor(options);

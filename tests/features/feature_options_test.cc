@@ -20,9 +20,9 @@ TEST(FeatureOptions, BindsTheKeysOfOrbSlam2) {
   table.Set("ORBextractor.nLevels", "4", "test");
   table.Set("ORBextractor.iniThFAST", "25", "test");
   table.Set("ORBextractor.minThFAST", "9", "test");
-  table.Set("ORBextractor.subpixel", "true", "test");
+  table.Set("ORBextractor.subpixel", "false", "test");
   table.Set("ORBextractor.keepEdges", "true", "test");
-  EXPECT_TRUE(options.subpixel);
+  EXPECT_FALSE(options.subpixel);
   EXPECT_TRUE(options.keep_edges);
   EXPECT_EQ(options.feature_count, 500);
   EXPECT_EQ(options.scale_factor, 1.5);

@@ -48,6 +48,7 @@ template <typename Blur>
 Described DescribeBy(const cv::Mat& image, int level_count, const Blur& blur) {
   FeatureOptions options;
   options.level_count = level_count;
+  options.subpixel = false;  // cv::ORB describes whole pixels
   FeatureExtractor extractor(options);
   const ExtractedFeatures features = extractor.Extract(image);
   ImagePyramid pyramid(extractor.levels());

@@ -68,17 +68,41 @@ ImageInput MakeImage() {
   return image;
 }
 
+Sensor StereoSensor() {
+  Sensor stereo = DistortedSensor();
+  stereo.kind = SensorKind::kStereo;
+  stereo.camera = {.fx = 260.0,
+                   .fy = 260.0,
+                   .cx = 159.5,
+                   .cy = 119.5,
+                   .width = kWidth,
+                   .height = kHeight,
+                   .bf = 30.0};
+  return stereo;
+}
+
+constexpr int kDisparity = 15;  // px, of a plane at 2 m
+
+// The pair of images of that plane.
+ImageInput MakePair() {
+  ImageInput pair = MakeImage();
+  pair.depth.release();
+  pair.right = cv::Mat(pair.grey.size(), CV_8UC1, cv::Scalar(90));
+  pair.grey.colRange(kDisparity, kWidth).copyTo(pair.right.colRange(0, kWidth - kDisparity));
+  return pair;
+}
+
 Eigen::Vector2d RawPixel(const Keypoint& keypoint) {
   return DistortedSensor().camera.Distort(keypoint.undistorted.cast<double>());
 }
 
-// The indices of the keypoints whose raw position is in a square.
+// The indices of the keypoints whose raw pixel is in a square.
 std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double top, double side) {
   const Eigen::AlignedBox2d square(Eigen::Vector2d(left, top),
                                    Eigen::Vector2d(left + side, top + side));
   std::vector<uint32_t> inside;
   for (uint32_t i = 0; i < frame.features.size(); ++i) {
-    if (square.contains(RawPixel(frame.features.keypoints[i]))) {
+    if (square.contains(RawPixel(frame.features.keypoints[i]).array().round().matrix())) {
       inside.push_back(i);
     }
   }
@@ -129,23 +153,33 @@ TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
   EXPECT_EQ(count(sensor_), kept);
 }
 
-// A whole pixel of an upper level is several pixels of the image, which is what limits the rotation
-// of a far view.
-TEST_F(FrameBuilderTest, PositionsOfAStereoCameraAreFinerThanAPixel) {
-  Sensor stereo = sensor_;
-  stereo.kind = SensorKind::kStereo;
-  stereo.camera = {.fx = 260.0,
-                   .fy = 260.0,
-                   .cx = 159.5,
-                   .cy = 119.5,
-                   .width = kWidth,
-                   .height = kHeight,
-                   .bf = 30.0};
-  ImageInput pair = MakeImage();
-  pair.depth.release();
-  constexpr int kDisparity = 15;
-  pair.right = cv::Mat(pair.grey.size(), CV_8UC1, cv::Scalar(90));
-  pair.grey.colRange(kDisparity, kWidth).copyTo(pair.right.colRange(0, kWidth - kDisparity));
+TEST_F(FrameBuilderTest, MasksOfTheRightImageAddLines) {
+  ImageInput pair = MakePair();
+  pair.masks = {Square("cup", 30, 160, 50), Square("book", 200, 60, 80)};
+  pair.right_masks = {Square("book", 200 - kDisparity, 60, 80), Square("dog", 30, 40, 50),
+                      Square("person", 250, 160, 60)};
+  FrameBuilder builder(StereoSensor(), DepthOptions(), FewFeatures(), DetectionOptions(),
+                       {"person"});
+  const BuiltFrame built = builder.Build(pair, runner_);
+  ASSERT_EQ(built.frame->detections.size(), 2u);
+  EXPECT_TRUE(built.frame->detections[0].right_lines.empty());
+  const Detection& book = built.frame->detections[1];
+  ASSERT_EQ(book.right_lines.size(), book.lines.size());
+  for (size_t i = 0; i < book.lines.size(); ++i) {
+    const Line2& left = book.lines[i].line;
+    EXPECT_NEAR(book.right_lines[i].line.offset, left.offset + kDisparity * left.normal.x(), 1e-6);
+  }
+  EXPECT_EQ(built.masks.right_masks, 1u);
+  EXPECT_EQ(built.masks.rejections.at(DetectionRejection::kNotInLeft), 1u) << "the dog";
+  ImageInput without_right = MakeImage();
+  without_right.right_masks = pair.right_masks;
+  ExpectInputError([&] { Build(without_right); }, {"masks of a right image"});
+}
+
+// A whole pixel of an upper level is several pixels of the image.
+TEST_F(FrameBuilderTest, PositionsAreFinerThanAPixelAsAreDisparities) {
+  const Sensor stereo = StereoSensor();
+  const ImageInput pair = MakePair();
   FeatureOptions options = FewFeatures();
   options.level_count = 1;
   const auto frame = FrameBuilder(stereo, DepthOptions(), options).Build(pair, runner_).frame;

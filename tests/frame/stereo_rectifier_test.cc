@@ -68,7 +68,7 @@ TEST(StereoRectifier, MasksFollowTheLeftImage) {
   const Eigen::Vector3d point(0.2, 0.1, 1.0);
   InstanceMask mask;
   mask.outlines = {{pair.left.Distort(pair.left.Project(point)), {300.0, 200.0}, {320.0, 240.0}}};
-  rectifier.Rectify(mask);
+  rectifier.RectifyLeft(mask);
   const Eigen::Vector2d expected =
       rectifier.camera().Project(rectifier.rectified_from_left() * point);
   EXPECT_LT((mask.outlines[0][0] - expected).norm(), 1e-4);

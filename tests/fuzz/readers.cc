@@ -102,7 +102,7 @@ void FuzzDepthImage(std::string_view bytes) {
 
 void FuzzObjects(std::string_view bytes) {
   TryFile(bytes, [](const fs::path& path) {
-    const ObjectReport report = ReadObjects(path, path);
+    const ObjectResults report = ReadObjects(path, path);
     const std::string text = FormatObjects(report) + FormatObservations(report);
     Expect(text.find("null,null,null") == std::string::npos, "a number that is not finite");
   });

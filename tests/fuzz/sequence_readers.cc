@@ -3,15 +3,18 @@
 #include <cmath>
 #include <fstream>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "fuzz/fuzzed_input.h"
 #include "fuzz/readers.h"
 #include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
+#include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "sequences/euroc_states.h"
 #include "sequences/rvl_depth.h"
+#include "settings/stereo_settings.h"
 
 namespace hullslam {
 namespace {
@@ -36,6 +39,29 @@ void FuzzIclAssociations(std::string_view bytes) {
   static const InputFolder folder("associations.txt");
   folder.Write(bytes);
   Try([] { OpenIclSequence(folder.path(), PinholeCamera(), DepthOptions()); });
+}
+
+// A small image, because the maps have an entry for each of its pixels.
+void FuzzStereoSettings(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    constexpr PinholeCamera kLeft{
+        .fx = 50.0, .fy = 50.0, .cx = 32.0, .cy = 24.0, .width = 64, .height = 48};
+    const std::optional<StereoCalibration> pair = ReadStereoPair(path, kLeft);
+    if (pair && pair->left.width * pair->left.height <= kLeft.width * kLeft.height) {
+      const StereoRectifier rectifier(*pair, "the pair");
+      Expect(rectifier.camera().FindFault().empty(), "a rectified camera with a fault");
+      Expect(rectifier.camera().bf > 0.0, "no baseline");
+    }
+  });
+}
+
+// The images do not exist.
+void FuzzKittiCalibration(std::string_view bytes) {
+  static const InputFolder folder("calib.txt");
+  folder.Write(bytes);
+  fs::create_directory(folder.path() / "image_0");
+  fs::create_directory(folder.path() / "image_1");
+  Try([] { OpenKittiPairs(folder.path()); });
 }
 
 void FuzzEurocSensor(std::string_view bytes) {
@@ -92,6 +118,8 @@ constexpr auto kSequenceReaders =
     std::to_array<FuzzedReader>({{"sequence", FuzzSequence},
                                  {"associations", FuzzAssociations},
                                  {"icl_associations", FuzzIclAssociations},
+                                 {"stereo_settings", FuzzStereoSettings},
+                                 {"kitti_calib", FuzzKittiCalibration},
                                  {"euroc_sensor", FuzzEurocSensor},
                                  {"euroc_images", FuzzEurocImages},
                                  {"euroc_states", FuzzEurocStates},

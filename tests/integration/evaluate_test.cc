@@ -109,16 +109,16 @@ class EvaluateObjects : public Evaluate {
     const Ellipsoid truth = {Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}),
                              Eigen::Vector3d::Constant(0.1)};
     const Ellipse outline = ProjectEllipsoid(report_.camera.Matrix(), {}, truth).value();
-    ReportedObject object;
+    ObjectResult object;
     object.id = ObjectId(3);
     object.state = ObjectState::kMapped;
     object.label = "cup";
     object.ellipsoid = {truth.world_from_object, 1.01 * truth.half_axes};
-    ReportedView view;
+    ObservationResult view;
     view.keyframe = KeyframeId(0);
     view.hull = view.contour = outline.Polygon(100);
     view.lines = {{{Eigen::Vector2d::UnitX(), -outline.Bounds().max().x()}, false}};
-    object.views = {view};
+    object.observations = {view};
     report_.objects = {object};
     WriteRun();
     WriteSequence();
@@ -183,7 +183,7 @@ class EvaluateObjects : public Evaluate {
         folder_.Write("groundtruth_objects.json", nlohmann::json{{"objects", objects}}.dump());
   }
 
-  ObjectReport report_;
+  ObjectResults report_;
   std::string run_ = folder_.path() / "run";
   std::string truth_file_;
 };

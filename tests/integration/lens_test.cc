@@ -41,7 +41,7 @@ class Lens : public ::testing::Test {
 // The series of tan(t) makes a Kannala-Brandt lens of the pinhole with which the desk is rendered.
 TEST_F(Lens, APinholeAsFisheyeGivesTheSameTrajectory) {
   const RenderedDesk desk(kFrames);
-  Run(desk.path(), "pinhole", {"--set", "ORBextractor.subpixel=true"});
+  Run(desk.path(), "pinhole", {});
   Run(desk.path(), "fisheye",
       {"--set", "Camera.type=KannalaBrandt8", "--set", "Camera.k1=0.333333333", "--set",
        "Camera.k2=0.133333333", "--set", "Camera.k3=0.0539682540", "--set",

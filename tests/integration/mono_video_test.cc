@@ -52,7 +52,7 @@ class MonoVideo : public MonoProgram {
     for (StampedPose& pose : truth) {
       pose.timestamp -= start;
     }
-    const AteReport ate = EvaluateAte(truth, Poses(), {.alignment = AlignmentKind::kSim3});
+    const AteResult ate = EvaluateAte(truth, Poses(), {.alignment = AlignmentKind::kSim3});
     EXPECT_TRUE(ate.ok()) << ate.failure;
     EXPECT_EQ(ate.pairs, static_cast<size_t>(kVideoFrames));
     return ate.errors.rmse;

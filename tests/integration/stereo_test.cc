@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "files/read_file.h"
 #include "sequences/named_images.h"
 #include "support/made_bags.h"
 #include "support/made_room.h"
@@ -63,6 +64,57 @@ TEST_F(Stereo, AFolderOfPairsIsTrackedInMetres) {
   EXPECT_NEAR(Scale(), 1.0, 0.01);
 }
 
+TEST_F(Stereo, MasksOfTheRightImagesBelongToThoseOfTheLeftOnes) {
+  constexpr int kFew = 4;
+  room_.WritePairs(path_, "left", "right", kFew, kBaseline);
+  const auto write = [&](const std::string& name, const std::string& text) {
+    for (int i = 0; i < kFew; ++i) {
+      folder_.Write(fmt::format("{}/{:06}.txt", name, i), text);
+    }
+    return (folder_.path() / name).string();
+  };
+  const std::string cup = "41 0.4 0.4 0.6 0.4 0.6 0.6 0.4 0.6\n";
+  const std::string left = write("masks", cup);
+  const std::string right = write("masks_right", cup + "0 0.1 0.4 0.3 0.4 0.3 0.6 0.1 0.6\n" +
+                                                     "73 0.1 0.4 0.3 0.4 0.3 0.6 0.1 0.6\n");
+  const std::string settings = WriteSettings(kBaseline);
+  ExpectRefusal({path_, "--settings", settings, "--masks-right", right}, {"--masks"});
+  const ProgramResult result =
+      ExpectMapOf({path_, "--settings", settings, "--masks", left, "--masks-right", right});
+  ExpectParts(result.output, {"right masks: " + right + " (yolo-seg)"});
+  // The book, which is not in the left images, but not the person, whose class is dynamic.
+  EXPECT_GE(Summary()["objects"]["rejections"]["mask_not_in_left"], kFew);
+  EXPECT_LE(Summary()["objects"]["rejections"]["mask_not_in_left"], 2 * kFew);
+}
+
+// Both cameras are turned by 6 degrees about an axis across their baseline.
+TEST_F(Stereo, PosesAreThoseOfTheLeftCameraAsRead) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.0, 0.8, 0.6)));
+  room_.WritePairs(path_, "left", "right", kFrames, kBaseline, turn);
+  const Eigen::Vector3d right = turn.conjugate() * Eigen::Vector3d(kBaseline, 0.0, 0.0);
+  const PinholeCamera& camera = room_.camera();
+  std::string settings = fmt::format(
+      "Camera.width: {}\nCamera.height: {}\nCamera.fps: 10\nStereo.T_c1_c2: !!opencv-matrix\n"
+      "  rows: 4\n  cols: 4\n  dt: f\n  data: [1,0,0,{}, 0,1,0,{}, 0,0,1,{}, 0,0,0,1]\n",
+      camera.width, camera.height, right.x(), right.y(), right.z());
+  for (const char* const name : {"Camera1", "Camera2"}) {
+    settings += fmt::format("{0}.fx: {1}\n{0}.fy: {2}\n{0}.cx: {3}\n{0}.cy: {4}\n", name, camera.fx,
+                            camera.fy, camera.cx, camera.cy);
+  }
+  ExpectMapOf({path_, "--settings", folder_.Write("turned.yaml", settings)});
+  EXPECT_LT(Ate(), kSmall);
+  const auto turned_by = [](const Rigid3& from, const Rigid3& to) {
+    return from.rotation.conjugate() * to.rotation;
+  };
+  const Rigid3 turned{turn, Eigen::Vector3d::Zero()};
+  const Trajectory poses = Poses();
+  // Those of the rectified camera would differ by a degree.
+  EXPECT_LT(turned_by(poses.front().world_from_cam, poses.back().world_from_cam)
+                .angularDistance(
+                    turned_by(MadeRoom::Pose(0) * turned, MadeRoom::Pose(kFrames - 1) * turned)),
+            0.004);
+}
+
 TEST_F(Stereo, WrongPairsAreRefusedBeforeTheFirstFrame) {
   room_.WritePairs(path_, "left", "right", 3, kBaseline);
   const std::string settings = WriteSettings(kBaseline);
@@ -81,9 +133,8 @@ class StereoBag : public Stereo {
  protected:
   StereoBag() : Stereo("stereo_bag") {}
 
-  // A recording of the room, whose right camera has this baseline in its CameraInfo.
-  std::string WriteBag(double baseline) {
-    room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  // The messages of a recording of the room.
+  std::vector<MadeMessage> Messages(MessageCoding coding) const {
     const PinholeCamera& camera = room_.camera();
     const auto width = static_cast<uint32_t>(camera.width);
     const auto height = static_cast<uint32_t>(camera.height);
@@ -91,26 +142,35 @@ class StereoBag : public Stereo {
     for (const std::string side : {"left", "right"}) {
       uint64_t time = 1'000'000'000;
       messages.push_back({"/" + side + "/camera_info", "sensor_msgs/CameraInfo", time,
-                          MadeCameraInfo(MessageCoding::kCdr, width, height, "plumb_bob", {},
-                                         camera.fx, side == "left" ? 0.0 : baseline)});
+                          MadeCameraInfo(coding, width, height, "plumb_bob", {}, camera.fx,
+                                         side == "left" ? 0.0 : kBaseline)});
       for (const fs::path& file : ListImages(fs::path(path_) / side)) {
         const cv::Mat image = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
         messages.push_back({"/" + side + "/image", "sensor_msgs/Image", time,
-                            MadeImage(MessageCoding::kCdr, time, "mono8", width, height,
+                            MadeImage(coding, time, "mono8", width, height,
                                       std::string(image.datastart, image.dataend))});
         time += 100'000'000;
       }
     }
-    return folder_.Write("pairs.mcap", MadeMcap(messages, "zstd"));
+    return messages;
   }
 };
 
 TEST_F(StereoBag, TwoTopicsAreTrackedInMetres) {
-  const std::string bag = WriteBag(kBaseline);
+  room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  const std::string bag =
+      folder_.Write("pairs.mcap", MadeMcap(Messages(MessageCoding::kCdr), "zstd"));
   const ProgramResult result = ExpectMapOf({bag});
   ExpectParts(result.output, {"stereo: baseline 0.1200 m", "left images: /left/image",
                               "cameras: /left/camera_info and /right/camera_info"});
   EXPECT_NEAR(Scale(), 1.0, 0.01);
+  const std::string poses = ReadFile(output_ / "trajectory.txt");
+  for (const fs::path& other :
+       {WriteMadeSqlite(folder_.path() / "pairs.db3", Messages(MessageCoding::kCdr)),
+        folder_.Write("pairs.bag", MadeRos1(Messages(MessageCoding::kRos1), "bz2"))}) {
+    ExpectMapOf({other.string(), "--overwrite"});
+    EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), poses) << other;
+  }
   ExpectRefusal({bag, "--image-topic", "/right/image", "--right-topic", "/left/image"},
                 {bag, "left and right are swapped"});
 }

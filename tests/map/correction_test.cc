@@ -891,10 +891,10 @@ TEST_F(UniformCorrection, KeepsThePixelOfEveryLandmark) {
     before.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
       for (const Observation& observation : landmark.observations) {
         const auto expected =
-            ViewLandmark(world_.sensor(), before.CamFromWorld(observation.keyframe), landmark);
+            ProjectLandmark(world_.sensor(), before.CamFromWorld(observation.keyframe), landmark);
         const auto view =
-            ViewLandmark(world_.sensor(), made_.map.CamFromWorld(observation.keyframe),
-                         made_.map.landmarks().At(id));
+            ProjectLandmark(world_.sensor(), made_.map.CamFromWorld(observation.keyframe),
+                            made_.map.landmarks().At(id));
         ASSERT_EQ(view.has_value(), expected.has_value());
         if (view) {
           EXPECT_LT((view->pixel - expected->pixel).norm(), 1e-9);

@@ -24,15 +24,15 @@ Landmark MakeLandmark() {
 }
 
 bool IsSeen(const Landmark& landmark, const Rigid3& cam_from_world = {}) {
-  return ViewLandmark(SyntheticSensor(), cam_from_world, landmark).has_value();
+  return ProjectLandmark(SyntheticSensor(), cam_from_world, landmark).has_value();
 }
 
 Rigid3 CameraAt(double x, double y, double z) {
   return {Eigen::Quaterniond::Identity(), {-x, -y, -z}};
 }
 
-TEST(ViewLandmark, ByHand) {
-  const auto view = ViewLandmark(SyntheticSensor(), Rigid3(), MakeLandmark());
+TEST(ProjectLandmark, ByHand) {
+  const auto view = ProjectLandmark(SyntheticSensor(), Rigid3(), MakeLandmark());
   ASSERT_TRUE(view.has_value());
   EXPECT_EQ(view->point_in_cam, Eigen::Vector3d(0.4, -0.2, 2.0));
   EXPECT_NEAR(view->pixel.x(), 500.0 * 0.2 + 320.0, 1e-12);
@@ -43,15 +43,15 @@ TEST(ViewLandmark, ByHand) {
   EXPECT_EQ(view->level, 4);
 }
 
-TEST(ViewLandmark, DoesNotDependOnTheWorldFrame) {
+TEST(ProjectLandmark, DoesNotDependOnTheWorldFrame) {
   RandomGeometry random(1);
-  const auto expected = ViewLandmark(SyntheticSensor(), Rigid3(), MakeLandmark());
+  const auto expected = ProjectLandmark(SyntheticSensor(), Rigid3(), MakeLandmark());
   for (int i = 0; i < 20; ++i) {
     const Rigid3 new_from_old = random.Pose(2.0, 5.0);
     Landmark moved = MakeLandmark();
     moved.position = new_from_old * moved.position;
     moved.viewing_direction = new_from_old.rotation * moved.viewing_direction;
-    const auto view = ViewLandmark(SyntheticSensor(), Inverse(new_from_old), moved);
+    const auto view = ProjectLandmark(SyntheticSensor(), Inverse(new_from_old), moved);
     ASSERT_TRUE(view.has_value());
     EXPECT_LT((view->pixel - expected->pixel).norm(), 1e-9);
     EXPECT_NEAR(view->right_u, expected->right_u, 1e-9);
@@ -60,7 +60,7 @@ TEST(ViewLandmark, DoesNotDependOnTheWorldFrame) {
   }
 }
 
-TEST(ViewLandmark, IsNullBehindTheCamera) {
+TEST(ProjectLandmark, IsNullBehindTheCamera) {
   Landmark landmark = MakeLandmark();
   landmark.position.z() = -2.0;
   landmark.viewing_direction = -Eigen::Vector3d::UnitZ();
@@ -69,7 +69,7 @@ TEST(ViewLandmark, IsNullBehindTheCamera) {
   EXPECT_FALSE(IsSeen(landmark));
 }
 
-TEST(ViewLandmark, IsNullOutsideTheImage) {
+TEST(ProjectLandmark, IsNullOutsideTheImage) {
   // At 2 m the image ends 0.64 * 2 m left and right, 0.48 * 2 m above and below.
   Landmark landmark = MakeLandmark();
   for (const auto& [x, y, is_inside] :
@@ -82,7 +82,7 @@ TEST(ViewLandmark, IsNullOutsideTheImage) {
   }
 }
 
-TEST(ViewLandmark, IsNullFromMuchNearerOrFarther) {
+TEST(ProjectLandmark, IsNullFromMuchNearerOrFarther) {
   // The landmark was seen from 1.116 m to 4 m. A factor of 1.2, one level, is added at both ends,
   // so it is expected from 0.930 m to 4.8 m.
   Landmark landmark = MakeLandmark();
@@ -93,7 +93,7 @@ TEST(ViewLandmark, IsNullFromMuchNearerOrFarther) {
   EXPECT_FALSE(IsSeen(landmark, CameraAt(0.0, 0.0, -4.801)));
 }
 
-TEST(ViewLandmark, IsNullFromMoreThanSixtyDegreesAway) {
+TEST(ProjectLandmark, IsNullFromMoreThanSixtyDegreesAway) {
   Landmark landmark = MakeLandmark();
   landmark.position = {0.0, 0.0, 2.0};
   for (const double degrees : {0.0, 59.9, 60.1, 120.0, 180.0}) {
@@ -104,14 +104,14 @@ TEST(ViewLandmark, IsNullFromMoreThanSixtyDegreesAway) {
 }
 
 // The reference keyframe sees the landmark at its keypoint and at the level of the keypoint.
-TEST(ViewLandmark, FindsTheKeypointOfTheReferenceKeyframe) {
+TEST(ProjectLandmark, FindsTheKeypointOfTheReferenceKeyframe) {
   const SyntheticWorld world;
   const SyntheticMap made = MakeSyntheticMap(world, {0, 10, 20});
   int checked = 0;
   made.map.landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
     for (const Observation& observation : landmark.observations) {
       const Keyframe& keyframe = made.map.keyframes().At(observation.keyframe);
-      const auto view = ViewLandmark(world.sensor(), keyframe.cam_from_world, landmark);
+      const auto view = ProjectLandmark(world.sensor(), keyframe.cam_from_world, landmark);
       ASSERT_TRUE(view.has_value());
       const Keypoint& keypoint = keyframe.frame->features.keypoints[observation.keypoint];
       EXPECT_LT((view->pixel - keypoint.undistorted.cast<double>()).norm(), 1e-4);

@@ -30,6 +30,7 @@ inline Detection FullDetection() {
   detection.primitive = ObjectPrimitive::kConic;
   detection.lines = {{.line = {.normal = {0.6, -0.8}, .offset = 12.5}, .is_one_sided = true},
                      {.line = {.normal = {0.0, 1.0}, .offset = -40.4}}};
+  detection.right_lines = {{.line = {.normal = {0.8, 0.6}, .offset = -3.5}, .is_one_sided = true}};
   detection.ellipse = Ellipse{.center = {20.0, 30.0},
                               .shape = (Eigen::Matrix2d() << 90.0, 3.0, 3.0, 80.0).finished()};
   detection.is_cut = true;

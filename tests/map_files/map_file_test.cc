@@ -133,6 +133,11 @@ void ExpectSameDetection(const Detection& a, const Detection& b) {
     EXPECT_EQ(a.lines[i].line.Homogeneous(), b.lines[i].line.Homogeneous());
     EXPECT_EQ(a.lines[i].is_one_sided, b.lines[i].is_one_sided);
   }
+  ASSERT_EQ(a.right_lines.size(), b.right_lines.size());
+  for (size_t i = 0; i < a.right_lines.size(); ++i) {
+    EXPECT_EQ(a.right_lines[i].line.Homogeneous(), b.right_lines[i].line.Homogeneous());
+    EXPECT_EQ(a.right_lines[i].is_one_sided, b.right_lines[i].is_one_sided);
+  }
   ASSERT_EQ(a.ellipse.has_value(), b.ellipse.has_value());
   EXPECT_EQ(a.ellipse->center, b.ellipse->center);
   EXPECT_EQ(a.ellipse->shape, b.ellipse->shape);

@@ -229,7 +229,7 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
 }
 
 // A monocular camera that moves sideways past a cup, which is 0.06 m wide and 1 m away. The first
-// view does not tell how far away the cup is.
+// observation does not tell how far away the cup is.
 class UnknownDepth : public Association {
  protected:
   static Rigid3 Sideways(double x) { return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}}; }

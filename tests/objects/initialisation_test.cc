@@ -87,7 +87,7 @@ class Rays : public ::testing::Test {
           AddObserver(map, sensor_, CameraOnCircle(step * i, 1.5, 0.5), {made_});
       map.AddObservation(object, keyframe, 0);
     }
-    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)), {});
+    return StartFromRays(sensor_.camera, ResolveObservations(map, map.objects().At(object)), {});
   }
   Sensor sensor_ = MakeObjectSensor();
   MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});
@@ -114,7 +114,7 @@ TEST_F(Rays, NeedAnAngle) {
       map.AddObservation(object,
                          AddObserver(map, sensor_, CameraOnCircle(angle, 1.5, 0.0), {made_}), 0);
     }
-    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)), {});
+    return StartFromRays(sensor_.camera, ResolveObservations(map, map.objects().At(object)), {});
   };
   EXPECT_FALSE(start(3.4));
   EXPECT_TRUE(start(3.8));
@@ -123,31 +123,32 @@ TEST_F(Rays, NeedAnAngle) {
 // One camera sees the object at its left, the other one, to the right of it, at its right.
 TEST_F(Rays, ThatMeetBehindTheCamerasGiveNothing) {
   std::vector<Detection> detections(2);
-  std::vector<ObjectView> views;
+  std::vector<ResolvedObservation> observations;
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? -1.0 : 1.0;
     const Eigen::Vector2d center(sensor_.camera.cx + 100.0 * side, sensor_.camera.cy);
     detections[i].box = {center.array() - 20.0, center.array() + 20.0};
-    views.push_back(
+    observations.push_back(
         {KeyframeId(), {Eigen::Quaterniond::Identity(), {-0.2 * side, 0.0, 0.0}}, &detections[i]});
   }
-  EXPECT_FALSE(StartFromRays(sensor_.camera, views, {}));
-  std::swap(views[0].detection, views[1].detection);
-  EXPECT_TRUE(StartFromRays(sensor_.camera, views, {}));
+  EXPECT_FALSE(StartFromRays(sensor_.camera, observations, {}));
+  std::swap(observations[0].detection, observations[1].detection);
+  EXPECT_TRUE(StartFromRays(sensor_.camera, observations, {}));
 }
 
-// Four views within a few degrees of one another, too few for rays.
+// Four observations within a few degrees of one another, too few for rays.
 class Landmarks : public ::testing::Test {
  protected:
-  std::vector<ObjectView> Views(double step) {
+  std::vector<ResolvedObservation> Observations(double step) {
     const ObjectId object = map_.AddObject();
     for (int i = 0; i < 4; ++i) {
       const Rigid3 pose = CameraOnCircle(step * i, 1.5, 0.5);
       map_.AddObservation(object, textured_.AddObserver(map_, sensor_, pose), 0);
     }
-    std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(object));
-    AddSurfaceLandmarks(map_, views);
-    return views;
+    std::vector<ResolvedObservation> observations =
+        ResolveObservations(map_, map_.objects().At(object));
+    AddSurfaceLandmarks(map_, observations);
+    return observations;
   }
   Sensor sensor_ = MakeObjectSensor();
   MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});
@@ -156,7 +157,7 @@ class Landmarks : public ::testing::Test {
 };
 
 TEST_F(Landmarks, GiveASphereWithItsSurfaceAtTheirDepth) {
-  const auto sphere = StartFromLandmarks(sensor_.camera, Views(0.02), {});
+  const auto sphere = StartFromLandmarks(sensor_.camera, Observations(0.02), {});
   ASSERT_TRUE(sphere);
   EXPECT_LT((sphere->world_from_object.translation - made_.ellipsoid.world_from_object.translation)
                 .norm(),
@@ -165,13 +166,13 @@ TEST_F(Landmarks, GiveASphereWithItsSurfaceAtTheirDepth) {
 }
 
 TEST_F(Landmarks, BehindTheObjectDoNotMoveItIfTheyAreFew) {
-  std::vector<ObjectView> views = Views(0.02);
-  for (ObjectView& view : views) {
+  std::vector<ResolvedObservation> observations = Observations(0.02);
+  for (ResolvedObservation& observation : observations) {
     for (size_t i = 0; i < 10; ++i) {
-      view.landmarks[3 * i] *= 3.0;
+      observation.landmarks[3 * i] *= 3.0;
     }
   }
-  const auto sphere = StartFromLandmarks(sensor_.camera, views, {});
+  const auto sphere = StartFromLandmarks(sensor_.camera, observations, {});
   ASSERT_TRUE(sphere);
   EXPECT_LT((sphere->world_from_object.translation - made_.ellipsoid.world_from_object.translation)
                 .norm(),
@@ -179,12 +180,12 @@ TEST_F(Landmarks, BehindTheObjectDoNotMoveItIfTheyAreFew) {
 }
 
 TEST_F(Landmarks, MustBeInHalfOfTheViews) {
-  std::vector<ObjectView> views = Views(0.02);
-  views[0].landmarks.clear();
-  views[2].landmarks.resize(2);
-  EXPECT_TRUE(StartFromLandmarks(sensor_.camera, views, {}));
-  views[3].landmarks.clear();
-  EXPECT_FALSE(StartFromLandmarks(sensor_.camera, views, {}));
+  std::vector<ResolvedObservation> observations = Observations(0.02);
+  observations[0].landmarks.clear();
+  observations[2].landmarks.resize(2);
+  EXPECT_TRUE(StartFromLandmarks(sensor_.camera, observations, {}));
+  observations[3].landmarks.clear();
+  EXPECT_FALSE(StartFromLandmarks(sensor_.camera, observations, {}));
   EXPECT_FALSE(StartFromLandmarks(sensor_.camera, {}, {}));
 }
 

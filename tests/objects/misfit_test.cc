@@ -96,21 +96,21 @@ TEST(MeasureMisfit, LeavesOutOneSidedLines) {
   const MadeObject object = MakeObject("cup", Eigen::Vector3d::Zero(), {0.05, 0.1, 0.2});
   const Rigid3 camera = CameraOnCircle(0.2, 1.5, 0.4);
   Detection detection = Detect(object, sensor, camera);
-  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
-  EXPECT_EQ(MeasureMisfit(sensor.camera, object.ellipsoid, views).size(), 16u);
+  const std::vector<ResolvedObservation> observations = {{KeyframeId(0), camera, &detection}};
+  EXPECT_EQ(MeasureMisfit(sensor.camera, object.ellipsoid, observations).size(), 16u);
   for (size_t i = 0; i < 5; ++i) {
     detection.lines[i].is_one_sided = true;
     detection.lines[i].line.offset += 30.0;
   }
-  const auto samples = MeasureMisfit(sensor.camera, object.ellipsoid, views);
+  const auto samples = MeasureMisfit(sensor.camera, object.ellipsoid, observations);
   EXPECT_EQ(samples.size(), 11u);
   ObjectLandmark landmark;
   landmark.ellipsoid = object.ellipsoid;
-  EXPECT_NEAR(MeasureSpread(sensor.camera, landmark, views, {}).plain_px, 0.0, 1e-6);
+  EXPECT_NEAR(MeasureSpread(sensor.camera, landmark, observations, {}).plain_px, 0.0, 1e-6);
 }
 
-// Compensation relies on this law: the excess of a box over an ellipsoid that some views measured
-// is also that of a new view between them, for every camera and distance.
+// Compensation relies on this law: the excess of a box over an ellipsoid that some observations
+// measured is also that of a new observation between them, for every camera and distance.
 class BoxForAnEllipsoid : public ::testing::Test {
  protected:
   BoxForAnEllipsoid() {
@@ -125,7 +125,7 @@ class BoxForAnEllipsoid : public ::testing::Test {
     object.has_shape = true;
     object.ellipsoid = box_.ellipsoid;
     object.misfit_samples =
-        MeasureMisfit(sensor_.camera, object.ellipsoid, CollectViews(map_, object));
+        MeasureMisfit(sensor_.camera, object.ellipsoid, ResolveObservations(map_, object));
   }
 
   // Lines of the box's silhouette in 16 directions.
@@ -195,7 +195,8 @@ TEST_F(BoxForAnEllipsoid, TheExcessOfSomeViewsIsThatOfOthers) {
 
 TEST_F(BoxForAnEllipsoid, TheSpreadIsMeasuredOnViewsThatWereLeftOut) {
   const ObjectLandmark& object = map_.objects().At(id_);
-  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, CollectViews(map_, object));
+  const MisfitSpread spread =
+      MeasureSpread(sensor_.camera, object, ResolveObservations(map_, object));
   EXPECT_GT(spread.plain_px, 4.0);
   EXPECT_LT(spread.compensated_px, 0.3 * spread.plain_px);
   EXPECT_GT(spread.compensated_px, 0.0);

@@ -73,9 +73,9 @@ TEST_F(ObjectConstraintTest, LandmarksReplaceDepthPoints) {
   detection_.points.clear();
   EXPECT_EQ(Make().depth, nullptr);
   options_.depth.landmark_sigma = 0.5;
-  const ObjectView view{KeyframeId(), Rigid3(), &detection_, points};
-  const ObjectConstraint constraint = MakeObjectConstraint(kObjectCamera, view, detection_.lines,
-                                                           SphereAhead().ellipsoid, 0.0, options_);
+  const ResolvedObservation observation{KeyframeId(), Rigid3(), &detection_, points};
+  const ObjectConstraint constraint = MakeObjectConstraint(
+      kObjectCamera, observation, detection_.lines, SphereAhead().ellipsoid, 0.0, options_);
   const Eigen::VectorXd depth = ObjectResidualsOf(*constraint.depth, SphereAhead());
   ASSERT_EQ(depth.size(), 6);
   EXPECT_NEAR(depth[0], 0.3 / (0.5 * 0.1) / std::sqrt(6.0), 1e-6);

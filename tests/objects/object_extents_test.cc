@@ -48,7 +48,7 @@ Points Ball(const Eigen::Vector3d& sides) {
 class Measured : public ::testing::Test {
  protected:
   void See(const Points& body, int count = 20, double noise_px = 0.0) {
-    views_.clear();
+    observations_.clear();
     for (int i = 0; i < count; ++i) {
       const Rigid3 pose = CameraOnCircle(0.1 * i, 1.2, 0.6);
       std::vector<Eigen::Vector2d> pixels;
@@ -69,11 +69,11 @@ class Measured : public ::testing::Test {
         line.line.offset = -reach + random_.Number(-noise_px, noise_px);
         detection.lines.push_back(line);
       }
-      views_.push_back({KeyframeId(i), pose, &detection});
+      observations_.push_back({KeyframeId(i), pose, &detection});
     }
   }
   std::optional<ObjectExtents> Measure() const {
-    return MeasureExtents(sensor_, {Rigid3(), {0.27, 0.13, 0.06}}, views_);
+    return MeasureExtents(sensor_, {Rigid3(), {0.27, 0.13, 0.06}}, observations_);
   }
   void ExpectSides(const Eigen::Vector3d& sides, double tolerance) const {
     const auto extents = Measure();
@@ -86,7 +86,7 @@ class Measured : public ::testing::Test {
   Sensor sensor_ = MakeObjectSensor();
   Rigid3 turned_{ExpSo3(Eigen::Vector3d(0.0, 0.0, 0.3)), {0.02, -0.01, 0.01}};
   std::deque<Detection> detections_;
-  std::vector<ObjectView> views_;
+  std::vector<ResolvedObservation> observations_;
   RandomGeometry random_{3};
 };
 

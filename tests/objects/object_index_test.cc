@@ -8,8 +8,8 @@
 
 #include "geometry/polygon_overlap.h"
 #include "objects/made_objects.h"
-#include "objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "objects/resolved_observation.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -60,7 +60,7 @@ TEST_F(Mapping, AnObjectIsACandidateUntilItIsSeenFromEnoughSides) {
   See(table, 0.0);
   See(table, 0.001);
   EXPECT_EQ(map_.objects().size(), 3u);
-  EXPECT_EQ(mapper_.rejections().at(ObjectRejection::kFewViews), 6u);
+  EXPECT_EQ(mapper_.rejections().at(ObjectRejection::kFewKeyframes), 6u);
   See(table, 0.002);
   See(table, 0.003);
   EXPECT_TRUE(Mapped().empty());
@@ -84,7 +84,7 @@ TEST_F(Mapping, DepthTellsWhereAnObjectIsThatIsSeenFromOneSide) {
   }
 }
 
-// Six views within 6 degrees, without depth.
+// Six observations within 6 degrees, without depth.
 TEST_F(Mapping, LandmarksTellWhereAnObjectIsWithoutDepth) {
   const MadeObject cup = MakeObject("cup", {0.1, 0.05, 0.0}, {0.10, 0.12, 0.11});
   for (const size_t landmarks : {0, 40}) {
@@ -215,8 +215,8 @@ TEST_F(Mapping, AnObjectIsJudgedOnlyAfterEnoughKeyframesThatShouldShowIt) {
   EXPECT_TRUE(Mapped().empty());
 }
 
-// The shape is computed again when the number of views has grown by an eighth; from 10 views on,
-// that is with every second view.
+// The shape is computed again when the number of observations has grown by an eighth; from 10
+// observations on, that is with every second observation.
 TEST_F(Mapping, TheShapeIsComputedAgainAsTheViewsGrow) {
   const auto table = MakeTable();
   for (int i = 0; i < 12; ++i) {
@@ -227,7 +227,8 @@ TEST_F(Mapping, TheShapeIsComputedAgainAsTheViewsGrow) {
   EXPECT_GE(Mapped()[0].shaped_views, 11u);
 }
 
-// A shape of 16 views is computed again with the 19th view, but a rejected one with the next view.
+// A shape of 16 observations is computed again with the 19th observation, but a rejected one with
+// the next observation.
 TEST_F(Mapping, ARejectedShapeIsComputedAgainWithTheNextView) {
   const auto table = MakeTable();
   for (int i = 0; i < 16; ++i) {
@@ -256,13 +257,13 @@ TEST_F(Mapping, TheBestOfSeveralStartsIsKept) {
       See({made}, 0.1 * i);
     }
     ASSERT_EQ(Mapped().size(), 1u);
-    const auto views = CollectViews(map_, map_.objects().At(ObjectId(0)));
-    const double distance = MeanDistance(views, MeanOf(CollectPoints(views, 20)));
+    const auto observations = ResolveObservations(map_, map_.objects().At(ObjectId(0)));
+    const double distance = MeanDistance(observations, MeanOf(CollectPoints(observations, 20)));
     const auto starts = StartsFromPoints(
-        CollectPoints(views, static_cast<size_t>(options.start.max_points)), distance, {});
+        CollectPoints(observations, static_cast<size_t>(options.start.max_points)), distance, {});
     std::vector<double> costs;
     for (const Ellipsoid& start : starts) {
-      costs.push_back(RefineEllipsoid(start, start, sensor_, views,
+      costs.push_back(RefineEllipsoid(start, start, sensor_, observations,
                                       options.refinement.max_misfit_px, options.refinement)
                           .cost);
     }

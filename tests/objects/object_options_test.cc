@@ -67,12 +67,12 @@ TEST(ObjectOptions, KeysFollowTheStructs) {
   table.Set("objects.detection.min_keypoints", "3", "test");
   table.Set("objects.start.min_parallax_without_depth", "20", "test");
   table.Set("objects.validity.min_overlap", "0.4", "test");
-  table.Set("objects.refinement.loss_px", "9", "test");
+  table.Set("objects.refinement.max_misfit_px", "9", "test");
   table.Set("objects.prior_sigma_without_depth", "0.3", "test");
   EXPECT_EQ(options.detection.min_keypoints, 3);
   EXPECT_EQ(options.start.min_parallax_without_depth, 20.0);
   EXPECT_EQ(options.validity.min_overlap, 0.4);
-  EXPECT_EQ(options.refinement.loss_px, 9.0);
+  EXPECT_EQ(options.refinement.max_misfit_px, 9.0);
   EXPECT_EQ(options.refinement.constraint.prior_without_depth.log_axes, 0.3);
   EXPECT_EQ(options.bundle.constraint.prior_without_depth.log_axes, 0.3);
 }

@@ -18,16 +18,18 @@ class RefinementTest : public ::testing::Test {
           id_, AddObserver(map_, sensor_, CameraOnCircle(step * i, 1.5, 0.5), {made_}), 0);
     }
   }
-  std::vector<ObjectView> Views() const { return CollectViews(map_, map_.objects().At(id_)); }
-  // In one view, the right side of the mask is 60 px too far to the right.
-  std::vector<ObjectView> ViewsWithABadMask() {
+  std::vector<ResolvedObservation> Observations() const {
+    return ResolveObservations(map_, map_.objects().At(id_));
+  }
+  // In one observation, the right side of the mask is 60 px too far to the right.
+  std::vector<ResolvedObservation> ViewsWithABadMask() {
     bad_ = *map_.keyframes().At(KeyframeId(4)).frame;
     for (SilhouetteLine& line : bad_.detections[0].lines) {
       line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
     }
-    std::vector<ObjectView> views = Views();
-    views[4].detection = &bad_.detections[0];
-    return views;
+    std::vector<ResolvedObservation> observations = Observations();
+    observations[4].detection = &bad_.detections[0];
+    return observations;
   }
   Ellipsoid Start() const {
     Ellipsoid start = made_.ellipsoid;
@@ -55,7 +57,8 @@ TEST_F(RefinementTest, FindsTheTruthFromManySides) {
     ObjectRefinementOptions options;
     options.constraint.residual = residual;
     options.constraint.prior.log_axes = 10.0;
-    const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, options);
+    const Refinement refined =
+        RefineEllipsoid(Start(), Start(), sensor_, Observations(), 5.0, options);
     ASSERT_TRUE(refined.is_usable);
     EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.02) << NameOf(residual);
     EXPECT_LT((refined.ellipsoid.world_from_object.translation -
@@ -69,7 +72,7 @@ TEST_F(RefinementTest, FindsTheTruthFromManySides) {
 TEST_F(RefinementTest, TheTruthStays) {
   Look(0.3, 8);
   const Refinement refined =
-      RefineEllipsoid(made_.ellipsoid, made_.ellipsoid, sensor_, Views(), 5.0, {});
+      RefineEllipsoid(made_.ellipsoid, made_.ellipsoid, sensor_, Observations(), 5.0, {});
   ASSERT_TRUE(refined.is_usable);
   EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 1e-4);
   EXPECT_NEAR(refined.cost, 0.0, 1e-6);
@@ -77,16 +80,17 @@ TEST_F(RefinementTest, TheTruthStays) {
 
 TEST_F(RefinementTest, WithASmallAngleDepthAndPriorConstrainTheFreeParameters) {
   Look(0.02, 4);
-  const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, {});
+  const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Observations(), 5.0, {});
   ASSERT_TRUE(refined.is_usable);
   EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.5);
-  EXPECT_GT(MeanOverlap(refined.ellipsoid, sensor_, Views()), 0.95);
+  EXPECT_GT(MeanOverlap(refined.ellipsoid, sensor_, Observations()), 0.95);
 }
 
 TEST_F(RefinementTest, OneBadMaskAmongManyHasLittleInfluence) {
   Look(0.3, 12);
-  const std::vector<ObjectView> views = ViewsWithABadMask();
-  const Refinement refined = RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 5.0, {});
+  const std::vector<ResolvedObservation> observations = ViewsWithABadMask();
+  const Refinement refined =
+      RefineEllipsoid(Start(), made_.ellipsoid, sensor_, observations, 5.0, {});
   ASSERT_TRUE(refined.is_usable);
   EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.1);
 }
@@ -95,12 +99,12 @@ TEST_F(RefinementTest, OneBadMaskAmongManyHasLittleInfluence) {
 // the misfit itself is not clamped.
 TEST_F(RefinementTest, TheLossIsThatOfALineWithTheLargestMisfit) {
   Look(0.3, 12);
-  const std::vector<ObjectView> views = ViewsWithABadMask();
+  const std::vector<ResolvedObservation> observations = ViewsWithABadMask();
   const auto refine = [&](double loss_px, double max_misfit_px) {
     ObjectRefinementOptions options;
     options.loss_px = loss_px;
     options.max_misfit_px = max_misfit_px;
-    return RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 4.0, options).ellipsoid;
+    return RefineEllipsoid(Start(), made_.ellipsoid, sensor_, observations, 4.0, options).ellipsoid;
   };
   const Ellipsoid ellipsoid = refine(8.0, 5.0);
   EXPECT_LT(AxisError(refine(16.0, 10.0), ellipsoid), 1e-9);
@@ -111,7 +115,7 @@ TEST_F(RefinementTest, AnEllipsoidBehindAllCamerasDoesNotMove) {
   Look(0.05, 3);
   Ellipsoid behind = made_.ellipsoid;
   behind.world_from_object.translation = {5.0, 0.0, 0.5};
-  const Refinement refined = RefineEllipsoid(behind, behind, sensor_, Views(), 5.0, {});
+  const Refinement refined = RefineEllipsoid(behind, behind, sensor_, Observations(), 5.0, {});
   EXPECT_LT((refined.ellipsoid.world_from_object.translation - behind.world_from_object.translation)
                 .norm(),
             1.0);

@@ -14,7 +14,7 @@ TEST(ObjectRejection, EveryReasonHasAName) {
     names.insert(ToString(static_cast<ObjectRejection>(i)));
   }
   EXPECT_EQ(names.size(), static_cast<size_t>(kObjectRejectionCount));
-  EXPECT_EQ(ToString(ObjectRejection::kFewViews), "few_views");
+  EXPECT_EQ(ToString(ObjectRejection::kFewKeyframes), "few_views");
   EXPECT_EQ(ToString(ObjectRejection::kFused), "fused");
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "objects/made_objects.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 
 namespace hullslam {
 
@@ -20,7 +20,9 @@ class SeenByRing {
   }
 
   const PinholeCamera& camera() const { return sensor_.camera; }
-  std::vector<ObjectView> Views() const { return CollectViews(map_, map_.objects().At(object_)); }
+  std::vector<ResolvedObservation> Observations() const {
+    return ResolveObservations(map_, map_.objects().At(object_));
+  }
 
  private:
   Sensor sensor_ = MakeObjectSensor();

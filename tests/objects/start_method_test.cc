@@ -20,12 +20,12 @@ TEST(StartMethod, NamesAreInTheOrderOfTheEnumerators) {
 // Every method starts at an ellipsoid that every camera sees near the object.
 TEST(StartMethod, AllFindAnObjectThatIsSeenFromAllSides) {
   const SeenByRing seen(MakeObject("cup", {0.0, 0.0, 0.1}, {0.12, 0.15, 0.18}), 12, 0.45);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> observations = seen.Observations();
   const StartOptions options;
   for (size_t i = 0; i < ObjectStartNames().size(); ++i) {
     const std::vector<Ellipsoid> starts =
         MethodOf(static_cast<ObjectStart>(i))({.camera = seen.camera(),
-                                               .views = views,
+                                               .observations = observations,
                                                .center = {0.0, 0.0, 0.1},
                                                .has_depth = true,
                                                .options = options});
@@ -41,15 +41,15 @@ TEST(StartMethod, AllFindAnObjectThatIsSeenFromAllSides) {
 
 TEST(StartMethod, RaysDoNotUseDepth) {
   const SeenByRing seen(MakeObject("ball", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), 4, 0.5);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> observations = seen.Observations();
   const StartOptions options;
   const std::vector<Ellipsoid> starts = StartByRays({.camera = seen.camera(),
-                                                     .views = views,
+                                                     .observations = observations,
                                                      .center = {0.0, 0.0, 0.0},
                                                      .has_depth = true,
                                                      .options = options});
   ASSERT_EQ(starts.size(), 1u);
-  EXPECT_EQ(starts[0].half_axes, StartFromRays(seen.camera(), views, options)->half_axes);
+  EXPECT_EQ(starts[0].half_axes, StartFromRays(seen.camera(), observations, options)->half_axes);
 }
 
 }  // namespace

@@ -21,18 +21,18 @@ class Validity : public ::testing::Test {
     }
   }
   std::optional<ObjectRejection> Reason(const Ellipsoid& ellipsoid) const {
-    const auto objection =
-        FindObjection(ellipsoid, sensor_, CollectViews(map_, map_.objects().At(id_)), options_);
+    const auto objection = FindObjection(
+        ellipsoid, sensor_, ResolveObservations(map_, map_.objects().At(id_)), options_);
     return objection ? std::optional(objection->reason) : std::nullopt;
   }
-  // Four views from cameras 1.5 m away that are 1.5 cm apart. They belong to `map`.
-  std::vector<ObjectView> ViewsFromOneSide(Map& map, double height) const {
+  // Four observations from cameras 1.5 m away that are 1.5 cm apart. They belong to `map`.
+  std::vector<ResolvedObservation> ViewsFromOneSide(Map& map, double height) const {
     const ObjectId id = map.AddObject();
     for (int i = 0; i < 4; ++i) {
       const Rigid3 camera = CameraOnCircle(0.01 * i, 1.5, height);
       map.AddObservation(id, AddObserver(map, sensor_, camera, {made_}), 0);
     }
-    return CollectViews(map, map.objects().At(id));
+    return ResolveObservations(map, map.objects().At(id));
   }
   Ellipsoid Scaled(double x, double y, double z) const {
     Ellipsoid ellipsoid = made_.ellipsoid;
@@ -48,8 +48,8 @@ class Validity : public ::testing::Test {
 
 TEST_F(Validity, TheTrueQuadricIsValid) {
   EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
-  const auto views = CollectViews(map_, map_.objects().At(id_));
-  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, views), 1.0, 1e-9);
+  const auto observations = ResolveObservations(map_, map_.objects().At(id_));
+  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, observations), 1.0, 1e-9);
 }
 
 TEST_F(Validity, NotInFrontOfACamera) {
@@ -85,23 +85,23 @@ TEST_F(Validity, NearTheSurfaceIsTheLargerOfBothShares) {
 // In a map of unknown scale, the validity does not change if everything is ten times larger.
 TEST_F(Validity, DoesNotDependOnTheScaleOfTheMap) {
   std::vector<Detection> detections;
-  std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
-  detections.reserve(views.size());
-  for (ObjectView& view : views) {
-    view.cam_from_world.translation *= 10.0;
-    Detection& seen = detections.emplace_back(*view.detection);
+  std::vector<ResolvedObservation> observations = ResolveObservations(map_, map_.objects().At(id_));
+  detections.reserve(observations.size());
+  for (ResolvedObservation& observation : observations) {
+    observation.cam_from_world.translation *= 10.0;
+    Detection& seen = detections.emplace_back(*observation.detection);
     std::vector<Eigen::Vector3d> points = seen.points.Unpack();
     for (Eigen::Vector3d& point : points) {
       point *= 10.0;
     }
     seen.points = points;
-    view.detection = &seen;
+    observation.detection = &seen;
   }
   for (const double size : {0.04, 0.5, 0.9, 1.0, 1.1, 2.0, 5.0}) {
     const Ellipsoid ellipsoid = Scaled(size, 1.0, 1.0);
     Ellipsoid larger = ellipsoid;
     larger.half_axes *= 10.0;
-    const auto objection = FindObjection(larger, sensor_, views, options_);
+    const auto objection = FindObjection(larger, sensor_, observations, options_);
     EXPECT_EQ(objection ? std::optional(objection->reason) : std::nullopt, Reason(ellipsoid))
         << size;
   }
@@ -117,29 +117,29 @@ TEST_F(Validity, AnOutlineElsewhere) {
 // is compared with it.
 TEST_F(Validity, ABoxIsComparedWithTheBoxOfTheOutline) {
   std::vector<Detection> detections;
-  std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
-  detections.reserve(views.size());
-  for (ObjectView& view : views) {
-    Detection& seen = detections.emplace_back(*view.detection);
+  std::vector<ResolvedObservation> observations = ResolveObservations(map_, map_.objects().At(id_));
+  detections.reserve(observations.size());
+  for (ResolvedObservation& observation : observations) {
+    Detection& seen = detections.emplace_back(*observation.detection);
     seen.is_box = true;
     const Eigen::Vector2d& low = seen.box.min();
     const Eigen::Vector2d& high = seen.box.max();
     seen.hull = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-    view.detection = &seen;
+    observation.detection = &seen;
   }
-  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, views), 1.0, 1e-9);
+  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, observations), 1.0, 1e-9);
 }
 
 // The ellipsoid is farther away and larger, so the outlines still agree with it.
 TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   Map map;
-  const auto views = ViewsFromOneSide(map, 0.5);
-  const Eigen::Vector3d camera = Inverse(views[1].cam_from_world).translation;
+  const auto observations = ViewsFromOneSide(map, 0.5);
+  const Eigen::Vector3d camera = Inverse(observations[1].cam_from_world).translation;
   Ellipsoid drifted = made_.ellipsoid;
   drifted.world_from_object.translation = -0.35 * camera;
   drifted.half_axes *= 1.35;
-  EXPECT_GT(MeanOverlap(drifted, sensor_, views), 0.8);
-  const auto objection = FindObjection(drifted, sensor_, views, {});
+  EXPECT_GT(MeanOverlap(drifted, sensor_, observations), 0.8);
+  const auto objection = FindObjection(drifted, sensor_, observations, {});
   ASSERT_TRUE(objection);
   EXPECT_EQ(objection->reason, ObjectRejection::kOffPoints);
   EXPECT_NE(objection->detail.find("expected at least 0.40"), std::string::npos);
@@ -155,40 +155,40 @@ TEST_F(Validity, AnAxisAlongTheViewThatNothingConstrains) {
 // to 0.1 m, the half axis of 0.5 m is nearly five times as long.
 TEST_F(Validity, AHalfAxisMayExceedThePointsByTheFactorOfTheOptions) {
   Map map;
-  const auto views = ViewsFromOneSide(map, 0.0);
+  const auto observations = ViewsFromOneSide(map, 0.0);
   const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
-  EXPECT_GT(MeanOverlap(stretched, sensor_, views), 0.8);
+  EXPECT_GT(MeanOverlap(stretched, sensor_, observations), 0.8);
   options_.max_elongation = 10.0;
   options_.max_stretch = 6.0;
-  EXPECT_FALSE(FindObjection(stretched, sensor_, views, options_));
+  EXPECT_FALSE(FindObjection(stretched, sensor_, observations, options_));
   options_.max_stretch = 4.0;
-  const auto objection = FindObjection(stretched, sensor_, views, options_);
+  const auto objection = FindObjection(stretched, sensor_, observations, options_);
   ASSERT_TRUE(objection);
   EXPECT_EQ(objection->reason, ObjectRejection::kStretched);
 }
 
 TEST_F(Validity, ElongationIsAlongTheViewOverAcross) {
-  const auto views = CollectViews(map_, map_.objects().At(id_));
+  const auto observations = ResolveObservations(map_, map_.objects().At(id_));
   Ellipsoid ball = made_.ellipsoid;
   ball.half_axes = Eigen::Vector3d::Constant(0.1);
-  EXPECT_NEAR(Elongation(ball, views), 1.0, 1e-9);
+  EXPECT_NEAR(Elongation(ball, observations), 1.0, 1e-9);
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  for (const ObjectView& view : views) {
-    direction -= Inverse(view.cam_from_world).translation.normalized();
+  for (const ResolvedObservation& observation : observations) {
+    direction -= Inverse(observation.cam_from_world).translation.normalized();
   }
   ball.world_from_object.rotation =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction);
   ball.half_axes = {0.3, 0.05, 0.2};  // the extent across the view is sqrt(0.05 * 0.2)
-  EXPECT_NEAR(Elongation(ball, views), 3.0, 1e-9);
+  EXPECT_NEAR(Elongation(ball, observations), 3.0, 1e-9);
   ball.half_axes = {0.01, 0.1, 0.1};
-  EXPECT_NEAR(Elongation(ball, views), 0.25 * 10.0, 1e-9);
+  EXPECT_NEAR(Elongation(ball, observations), 0.25 * 10.0, 1e-9);
 }
 
 // The cameras see the object from directions that are up to 22 degrees apart.
 TEST_F(Validity, AnElongatedQuadricNeedsParallax) {
-  const auto views = CollectViews(map_, map_.objects().At(id_));
-  const double elongation = Elongation(made_.ellipsoid, views);
-  const double parallax = Parallax(views, Eigen::Vector3d::Zero());
+  const auto observations = ResolveObservations(map_, map_.objects().At(id_));
+  const double elongation = Elongation(made_.ellipsoid, observations);
+  const double parallax = Parallax(observations, Eigen::Vector3d::Zero());
   options_.max_elongation = elongation - 0.01;
   options_.elongation_parallax = parallax / elongation - 0.1;
   EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
@@ -201,8 +201,8 @@ TEST_F(Validity, AnElongatedQuadricNeedsParallax) {
 TEST_F(Validity, TheMisfitIsComparedWithTheSizeOfTheMasks) {
   options_.min_overlap = 0.0;
   const Ellipsoid larger = Scaled(1.2, 1.2, 1.2);
-  const auto views = CollectViews(map_, map_.objects().At(id_));
-  const double misfit = RelativeMisfit(sensor_.camera, larger, views);
+  const auto observations = ResolveObservations(map_, map_.objects().At(id_));
+  const double misfit = RelativeMisfit(sensor_.camera, larger, observations);
   // 0.2 of a radius, whose square is 1 / pi of the area
   EXPECT_NEAR(misfit, 0.2 / std::sqrt(std::numbers::pi), 0.01);
   options_.max_misfit = misfit - 0.001;

@@ -35,8 +35,8 @@ class Visibility : public ::testing::Test {
     return Add(cam_from_world, std::move(frame));
   }
   bool Shows(KeyframeId keyframe) const {
-    return ViewLocation(map_, sensor_, keyframe, map_.objects().At(id_), options_) ==
-           LocationView::kVisible;
+    return FindVisibility(map_, sensor_, keyframe, map_.objects().At(id_), options_) ==
+           LocationVisibility::kVisible;
   }
   static Rigid3 Back(double metres) { return {Eigen::Quaterniond::Identity(), {0, 0, metres}}; }
   static cv::Mat Wall(int millimetres) {
@@ -65,15 +65,15 @@ TEST_F(Visibility, APartInTheImageCanBeEnough) {
   aside.translation.x() = 0.6;  // the border of the image cuts a little of it
   const KeyframeId keyframe = Look(aside);
   const auto shows = [&](double min_inside) {
-    return ViewLocation(map_, sensor_, keyframe, map_.objects().At(id_), options_, min_inside) ==
-           LocationView::kVisible;
+    return FindVisibility(map_, sensor_, keyframe, map_.objects().At(id_), options_, min_inside) ==
+           LocationVisibility::kVisible;
   };
   EXPECT_FALSE(shows(1.0));
   EXPECT_TRUE(shows(0.5));
   Rigid3 far_aside;
   far_aside.translation.x() = 1.2;
-  EXPECT_EQ(ViewLocation(map_, sensor_, Look(far_aside), map_.objects().At(id_), options_, 0.01),
-            LocationView::kOutside);
+  EXPECT_EQ(FindVisibility(map_, sensor_, Look(far_aside), map_.objects().At(id_), options_, 0.01),
+            LocationVisibility::kOutside);
 }
 
 TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {

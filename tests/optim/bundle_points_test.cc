@@ -18,13 +18,13 @@ TEST(BundlePoints, KeepsTheViewsOfEachPoint) {
   points.AddView({}, 6, 0.5);
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points.positions()[2], Eigen::Vector3d(4.0, 5.0, 6.0));
-  ASSERT_EQ(std::as_const(points).ViewsOf(0).size(), 2u);
-  EXPECT_EQ(points.ViewsOf(0)[1].pose, 5u);
-  EXPECT_TRUE(points.ViewsOf(1).empty());
-  ASSERT_EQ(points.ViewsOf(2).size(), 1u);
-  EXPECT_EQ(points.ViewsOf(2)[0].pose, 6u);
-  EXPECT_EQ(points.ViewsOf(2)[0].weight, 0.5);
-  EXPECT_EQ(points.ViewsOf(0)[0].weight, 1.0) << "the default weight";
+  ASSERT_EQ(std::as_const(points).ObservationsOf(0).size(), 2u);
+  EXPECT_EQ(points.ObservationsOf(0)[1].pose, 5u);
+  EXPECT_TRUE(points.ObservationsOf(1).empty());
+  ASSERT_EQ(points.ObservationsOf(2).size(), 1u);
+  EXPECT_EQ(points.ObservationsOf(2)[0].pose, 6u);
+  EXPECT_EQ(points.ObservationsOf(2)[0].weight, 0.5);
+  EXPECT_EQ(points.ObservationsOf(0)[0].weight, 1.0) << "the default weight";
 }
 
 TEST(BundlePoints, ViewsAreInliersUntilTheyAreLeftOut) {
@@ -33,7 +33,7 @@ TEST(BundlePoints, ViewsAreInliersUntilTheyAreLeftOut) {
   points.AddView({}, 0);
   points.AddView({}, 1);
   EXPECT_EQ(points.CountInliers(), 2);
-  points.ViewsOf(0)[0].is_inlier = false;
+  points.ObservationsOf(0)[0].is_inlier = false;
   EXPECT_EQ(points.CountInliers(), 1);
 }
 

@@ -38,8 +38,8 @@ class CeresPoints {
     for (size_t i = 0; i < positions_.size(); ++i) {
       problem_.AddParameterBlock(positions_[i].data(), 3);
       blocks_.push_back(positions_[i].data());
-      for (const BundlePoints::View& view : made.points.ViewsOf(i)) {
-        AddView(made.camera, view, i, point_loss);
+      for (const BundlePoints::PointObservation& observation : made.points.ObservationsOf(i)) {
+        AddView(made.camera, observation, i, point_loss);
       }
     }
   }
@@ -67,17 +67,17 @@ class CeresPoints {
   }
 
  private:
-  void AddView(const PinholeCamera& camera, const BundlePoints::View& view, size_t point,
-               PointLoss point_loss) {
-    if (!view.is_inlier) {
+  void AddView(const PinholeCamera& camera, const BundlePoints::PointObservation& observation,
+               size_t point, PointLoss point_loss) {
+    if (!observation.is_inlier) {
       return;
     }
-    const bool has_depth = view.measurement.has_depth();
+    const bool has_depth = observation.measurement.has_depth();
     ceres::CostFunction* cost = nullptr;
     if (has_depth) {
-      cost = new RgbdReprojectionCost(camera, view.measurement);
+      cost = new RgbdReprojectionCost(camera, observation.measurement);
     } else {
-      cost = new ReprojectionCost(camera, view.measurement);
+      cost = new ReprojectionCost(camera, observation.measurement);
     }
     ceres::LossFunction* loss = nullptr;
     if (point_loss == PointLoss::kHuber) {
@@ -85,8 +85,9 @@ class CeresPoints {
     } else if (point_loss == PointLoss::kCauchy) {
       loss = new ceres::CauchyLoss(kCauchyScale);
     }
-    loss = new ceres::ScaledLoss(loss, view.weight, ceres::TAKE_OWNERSHIP);
-    problem_.AddResidualBlock(cost, loss, poses_[view.pose].data(), positions_[point].data());
+    loss = new ceres::ScaledLoss(loss, observation.weight, ceres::TAKE_OWNERSHIP);
+    problem_.AddResidualBlock(cost, loss, poses_[observation.pose].data(),
+                              positions_[point].data());
   }
 
   std::vector<PoseBlock> poses_;
@@ -220,9 +221,9 @@ TEST(EliminatedPoints, ViewsThatAreNoInliersHaveNoInfluence) {
   MadePoints made(4);
   MadePoints other(4);
   for (size_t i = 0; i < other.points.size(); ++i) {
-    made.points.ViewsOf(i)[0].is_inlier = false;
-    other.points.ViewsOf(i)[0].is_inlier = false;
-    other.points.ViewsOf(i)[0].measurement.measured.setConstant(1e5);
+    made.points.ObservationsOf(i)[0].is_inlier = false;
+    other.points.ObservationsOf(i)[0].is_inlier = false;
+    other.points.ObservationsOf(i)[0].measurement.measured.setConstant(1e5);
   }
   EliminatedPoints first(made.camera, made.points, 4, PointLoss::kHuber);
   EliminatedPoints second(other.camera, other.points, 4, PointLoss::kHuber);
@@ -250,8 +251,9 @@ TEST(EliminatedPoints, APointBehindACameraHasAnInfiniteCost) {
             1e9);  // the point starts again from its accepted position
 }
 
-// If the views of a point agree exactly, no step can lower its cost. This must not be mistaken for
-// a failed step: after a failed step a point is damped, and it holds the poses that see it.
+// If the observations of a point agree exactly, no step can lower its cost. This must not be
+// mistaken for a failed step: after a failed step a point is damped, and it holds the poses that
+// see it.
 TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
   MadePoints made(3);
   BundlePoints exact;
@@ -327,10 +329,10 @@ class FarPoint {
   }
   double Cost() {
     double cost = 0.0;
-    for (const BundlePoints::View& view : points.ViewsOf(0)) {
-      cost +=
-          0.5 * PointResidual(camera, view.measurement, poses[view.pose] * points.positions()[0])
-                    .squaredNorm();
+    for (const BundlePoints::PointObservation& observation : points.ObservationsOf(0)) {
+      cost += 0.5 * PointResidual(camera, observation.measurement,
+                                  poses[observation.pose] * points.positions()[0])
+                        .squaredNorm();
     }
     return cost;
   }

@@ -14,8 +14,8 @@
 
 namespace hullslam {
 
-// Points that cameras on a short path see: some with depth, some views wrong by 30 px, and some
-// that count less. Poses and positions are some centimetres away from the truth.
+// Points that cameras on a short path see: some with depth, some observations wrong by 30 px, and
+// some that count less. Poses and positions are some centimetres away from the truth.
 struct MadePoints {
   explicit MadePoints(size_t pose_count, size_t point_count = 40, uint64_t seed = 1) {
     RandomGeometry random(seed);

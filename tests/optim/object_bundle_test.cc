@@ -367,7 +367,7 @@ TEST_F(ObjectBundle, OuterViewsConstrainObjects) {
   const BundleResult two = Adjust(window, options);
   options.objects.max_outer_views = 10;
   const BundleResult all = Adjust(window, options);
-  EXPECT_EQ(two.residuals - none.residuals, 3 * 2 * 2);  // per view: outline and depth
+  EXPECT_EQ(two.residuals - none.residuals, 3 * 2 * 2);  // per observation: outline and depth
   EXPECT_EQ(all.residuals - none.residuals, 3 * 4 * 2);
   EXPECT_EQ(all.poses.size(), 1u);
 }

@@ -66,7 +66,7 @@ class ObjectSumCostTest : public ::testing::Test {
       cameras_.push_back(ToBlock(random.Pose(0.05, 0.1)));
     }
   }
-  // The outline and the depth points of the object in the view of a camera.
+  // The outline and the depth points of the object in the observation of a camera.
   ObjectConstraint ConstraintOf(size_t camera) const {
     const Rigid3 pose = FromBlock(cameras_[camera].data());
     const Detection detection = Detect(object_, sensor_, pose);

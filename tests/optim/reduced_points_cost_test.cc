@@ -105,8 +105,8 @@ TEST_F(ReducedPointsCostTest, IsNotDefinedForAPointBehindACamera) {
 
 TEST_F(ReducedPointsCostTest, APoseWithoutInliersHasNoDerivative) {
   for (size_t i = 0; i < made_.points.size(); ++i) {
-    for (BundlePoints::View& view : made_.points.ViewsOf(i)) {
-      view.is_inlier = view.pose != 1;
+    for (BundlePoints::PointObservation& observation : made_.points.ObservationsOf(i)) {
+      observation.is_inlier = observation.pose != 1;
     }
   }
   Eigen::VectorXd residuals;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/finished_run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "hullslam/results/trajectory_file.h"
@@ -72,23 +74,22 @@ TEST_F(FinishedRunTest, WhatARunDidNotHaveIsEmpty) {
     EXPECT_EQ(text, "");
   }
   EXPECT_FALSE(run.ReadLandmarkPoints());
-  EXPECT_FALSE(run.ReadObjectReport());
+  EXPECT_FALSE(run.ReadObjectResults());
   EXPECT_FALSE(run.ReadSceneGraph());
   EXPECT_FALSE(run.ReadConvertedGroundtruth());
 }
 
 TEST_F(FinishedRunTest, ARunWithoutADataSetIsThatOfItsProgram) {
   const std::map<std::string, std::string> datasets = {
-      {"rgbd_tum", "tum"},     {"map_objects", "tum"},        {"mono_icl", "icl"},
-      {"mono_euroc", "euroc"}, {"mono_video", "video"},       {"rgbd_bag", "bag"},
-      {"other", ""},           {"vslamlab_hullslam_mono", ""}};
+      {"rgbd_tum", "tum"},     {"map_objects", "tum"}, {"mono_icl", "icl"}, {"mono_euroc", "euroc"},
+      {"mono_video", "video"}, {"rgbd_bag", "bag"},    {"other", ""}};
   for (const auto& [program, dataset] : datasets) {
     summary_.provenance.program = program;
     summary_.provenance.dataset = std::nullopt;
     EXPECT_EQ(Open().sequence.dataset, dataset) << program;
   }
-  summary_.provenance.dataset = "vslamlab";
-  EXPECT_EQ(Open().sequence.dataset, "vslamlab");
+  summary_.provenance.dataset = "kitti";
+  EXPECT_EQ(Open().sequence.dataset, "kitti");
 }
 
 TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {
@@ -106,9 +107,32 @@ TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {
   folder_.Write("a/run/objects.json", "{");
   folder_.Write("a/run/scene.json", "{");
   folder_.Write("a/run/map.ply", "ply");
-  ExpectInputError([&] { run.ReadObjectReport(); }, {"objects.json"});
+  ExpectInputError([&] { run.ReadObjectResults(); }, {"objects.json"});
   ExpectInputError([&] { run.ReadSceneGraph(); }, {"scene.json"});
   ExpectInputError([&] { run.ReadLandmarkPoints(); }, {"map.ply"});
+}
+
+// The files have the poses of the camera as read, which is turned by 90 degrees.
+TEST_F(FinishedRunTest, PosesAreThoseOfTheRectifiedCamera) {
+  const Rigid3 turned(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitY())),
+      {1.0, 2.0, 3.0});
+  for (const char* const name : {"trajectory", "keyframes", "groundtruth"}) {
+    folder_.Write(fmt::format("a/run/{}.txt", name), FormatTrajectory({{1.0, turned}}));
+  }
+  summary_.provenance.sequence_choices["rectified_from_left"] = "0 0.707106781 0 0.707106781";
+  const FinishedRun run = Open();
+  for (const Trajectory& poses :
+       {run.ReadPoses(), run.ReadKeyframePoses(), run.ReadConvertedGroundtruth().value()}) {
+    const Rigid3& pose = poses[0].world_from_cam;
+    EXPECT_LT(pose.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1e-6);
+    EXPECT_EQ(pose.translation, Eigen::Vector3d(1.0, 2.0, 3.0));
+  }
+  EXPECT_GT(run.ReadPosesAsRead()[0].world_from_cam.rotation.angularDistance(
+                Eigen::Quaterniond::Identity()),
+            1.0);
+  summary_.provenance.sequence_choices["rectified_from_left"] = "0 0 x";
+  ExpectInputError([&] { Open().ReadPoses(); }, {"rectified_from_left", "'0 0 x'"});
 }
 
 TEST_F(FinishedRunTest, FindsInputsInTheFoldersAbove) {

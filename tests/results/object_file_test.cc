@@ -15,29 +15,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-ReportedView MakeView(uint32_t keyframe) {
-  ReportedView view;
-  view.keyframe = KeyframeId(keyframe);
-  view.timestamp = 1305031102.175304 + keyframe;
-  view.cam_from_world = Rigid3(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
-  view.label = "cup";
-  view.score = 0.75;
-  view.is_cut = true;
-  view.hull = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}};
-  view.contour = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}, {25.0, 30.0}};
-  view.lines = {{{Eigen::Vector2d(0.6, 0.8), -100.0}, false},
-                {{Eigen::Vector2d(-1.0, 0.0), 0.0}, true}};
-  return view;
+ObservationResult MakeView(uint32_t keyframe) {
+  ObservationResult observation;
+  observation.keyframe = KeyframeId(keyframe);
+  observation.timestamp = 1305031102.175304 + keyframe;
+  observation.cam_from_world = Rigid3(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
+  observation.label = "cup";
+  observation.score = 0.75;
+  observation.is_cut = true;
+  observation.hull = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}};
+  observation.contour = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}, {25.0, 30.0}};
+  observation.lines = {{{Eigen::Vector2d(0.6, 0.8), -100.0}, false},
+                       {{Eigen::Vector2d(-1.0, 0.0), 0.0}, true}};
+  return observation;
 }
 
-ObjectReport MakeReport() {
-  ObjectReport report;
+ObjectResults MakeReport() {
+  ObjectResults report;
   report.sequence = "data/fr1_xyz";
   report.camera.fx = 517.3;
   report.camera.fy = 516.5;
   report.camera.k1 = 0.2624;
   report.candidates = 4;
-  ReportedObject object;
+  ObjectResult object;
   object.id = ObjectId(7);
   object.state = ObjectState::kMapped;
   object.label = "cup";
@@ -46,7 +46,7 @@ ObjectReport MakeReport() {
   object.misfit_px = 3.5;
   object.fit.siou = 0.8;
   object.fit.mtd_m2 = 1.25e-3;
-  object.views = {MakeView(2), MakeView(5)};
+  object.observations = {MakeView(2), MakeView(5)};
   report.objects = {object, object};
   report.objects[1].id = ObjectId(9);
   report.objects[1].state = ObjectState::kCandidate;
@@ -76,18 +76,18 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   const Json observations = Json::parse(FormatObservations(MakeReport()));
   EXPECT_EQ(observations["version"], 2);
   ASSERT_EQ(observations["observations"].size(), 4U);
-  const Json& view = observations["observations"][1];
-  EXPECT_EQ(view["object"], 7);
-  EXPECT_EQ(view["keyframe"], 5);
-  EXPECT_EQ(view["class"], "cup");
-  EXPECT_EQ(view["cut"], true);
-  EXPECT_EQ(view["box"], false);
-  EXPECT_EQ(view["hull"][0], Json({10.12, 20.0}));  // 0.01 px
-  EXPECT_EQ(view["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
+  const Json& observation = observations["observations"][1];
+  EXPECT_EQ(observation["object"], 7);
+  EXPECT_EQ(observation["keyframe"], 5);
+  EXPECT_EQ(observation["class"], "cup");
+  EXPECT_EQ(observation["cut"], true);
+  EXPECT_EQ(observation["box"], false);
+  EXPECT_EQ(observation["hull"][0], Json({10.12, 20.0}));  // 0.01 px
+  EXPECT_EQ(observation["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
 }
 
 TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
-  const ObjectReport report = MakeReport();
+  const ObjectResults report = MakeReport();
   const Json json = Json::parse(FormatObjects(report));
   const Eigen::Matrix4d expected = report.objects[0].ellipsoid.DualQuadric();
   for (int row = 0; row < 4; ++row) {
@@ -101,21 +101,21 @@ TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
 }
 
 // Writes both files of a report and reads them.
-ObjectReport WriteAndRead(const ObjectReport& report) {
+ObjectResults WriteAndRead(const ObjectResults& report) {
   const TemporaryFolder folder;
   folder.Write("objects_observations.json", FormatObservations(report));
   return ReadObjects(folder.Write("objects.json", FormatObjects(report)));
 }
 
 TEST(ObjectFile, TheListOfObjectsStaysSmall) {
-  ObjectReport report = MakeReport();
+  ObjectResults report = MakeReport();
   const size_t few = FormatObjects(report).size();
-  report.objects[0].views.assign(2000, MakeView(3));
+  report.objects[0].observations.assign(2000, MakeView(3));
   EXPECT_LT(FormatObjects(report).size(), few + 10);
 }
 
 TEST(ObjectFile, TheTableHasOneLinePerObject) {
-  ObjectReport report = MakeReport();
+  ObjectResults report = MakeReport();
   report.objects[0].ellipsoid.world_from_object =
       Rigid3(Eigen::Quaterniond::Identity(), {0.5, -0.25, 1.5});
   report.objects[1].label = "a \"b\", c";
@@ -131,7 +131,7 @@ TEST(ObjectFile, TheTableHasOneLinePerObject) {
 // Classes come from files of others. The table is opened with a spreadsheet.
 TEST(ObjectFile, TheTableIsValidTextWithoutFormulas) {
   const auto class_in_table = [](const std::string& label) {
-    ObjectReport report = MakeReport();
+    ObjectResults report = MakeReport();
     report.objects.resize(1);
     report.objects[0].label = label;
     const std::string table = FormatObjectsCsv(report);
@@ -148,16 +148,16 @@ TEST(ObjectFile, TheTableIsValidTextWithoutFormulas) {
 }
 
 TEST(ObjectFile, LabelsAreReadInPrintableCharacters) {
-  ObjectReport report = MakeReport();
+  ObjectResults report = MakeReport();
   report.objects[0].label = "cup\x1b[2J";
   report.objects[0].votes = {{"cup\x1b[2J", 2.0}};
-  const ObjectReport read = WriteAndRead(report);
+  const ObjectResults read = WriteAndRead(report);
   EXPECT_EQ(read.objects[0].label, "cup?[2J");
   EXPECT_EQ(read.objects[0].votes.begin()->first, "cup?[2J");
 }
 
 TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
-  const ObjectReport read = WriteAndRead(MakeReport());
+  const ObjectResults read = WriteAndRead(MakeReport());
   EXPECT_EQ(FormatObjects(read), FormatObjects(MakeReport()));
   EXPECT_EQ(FormatObservations(read), FormatObservations(MakeReport()));
   EXPECT_EQ(read.candidates, 4U);
@@ -166,19 +166,20 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   EXPECT_EQ(read.objects[1].state, ObjectState::kCandidate);
   EXPECT_EQ(read.objects[0].fit.siou, 0.8);
   EXPECT_FALSE(read.objects[0].fit.siou_mask);
-  const ReportedView expected = MakeView(5);
-  const ReportedView& view = read.objects[0].views.at(1);
-  EXPECT_EQ(view.keyframe, expected.keyframe);
-  EXPECT_NEAR(view.timestamp, expected.timestamp, 1e-6);
-  EXPECT_LT(AngularDistance(view.cam_from_world.rotation, expected.cam_from_world.rotation), 1e-7);
-  EXPECT_TRUE(view.is_cut);
-  EXPECT_TRUE(view.lines.at(1).is_one_sided);
-  EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
+  const ObservationResult expected = MakeView(5);
+  const ObservationResult& observation = read.objects[0].observations.at(1);
+  EXPECT_EQ(observation.keyframe, expected.keyframe);
+  EXPECT_NEAR(observation.timestamp, expected.timestamp, 1e-6);
+  EXPECT_LT(AngularDistance(observation.cam_from_world.rotation, expected.cam_from_world.rotation),
+            1e-7);
+  EXPECT_TRUE(observation.is_cut);
+  EXPECT_TRUE(observation.lines.at(1).is_one_sided);
+  EXPECT_NEAR(observation.lines[0].line.normal.x(), 0.6, 1e-9);
 }
 
 // The report of a run that went on with a map of earlier sessions.
-ObjectReport MakeChangedReport() {
-  ObjectReport report = MakeReport();
+ObjectResults MakeChangedReport() {
+  ObjectResults report = MakeReport();
   const LocatedObject located = {ObjectId(7), report.objects[0].ellipsoid};
   ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
   moved.now = located;
@@ -190,7 +191,7 @@ ObjectReport MakeChangedReport() {
 }
 
 TEST(ObjectFile, ChangesAreWrittenAndRead) {
-  const ObjectReport report = MakeChangedReport();
+  const ObjectResults report = MakeChangedReport();
   const Json json = Json::parse(FormatObjects(report));
   ASSERT_EQ(json["changes"].size(), 2U);
   EXPECT_EQ(json["changes"][0]["change"], "moved");
@@ -198,32 +199,32 @@ TEST(ObjectFile, ChangesAreWrittenAndRead) {
   EXPECT_EQ(json["changes"][1]["class"], "book");
   EXPECT_TRUE(json["changes"][1]["now"].is_null());
   EXPECT_TRUE(Json::parse(FormatObjects(MakeReport()))["changes"].is_null());
-  const ObjectReport read = WriteAndRead(report);
+  const ObjectResults read = WriteAndRead(report);
   EXPECT_EQ(FormatObjects(read), FormatObjects(report));
   EXPECT_FALSE(WriteAndRead(MakeReport()).changes);
 }
 
 TEST(ObjectFile, AMapWithoutObjectsGivesAValidFile) {
-  ObjectReport empty;
+  ObjectResults empty;
   empty.camera = MakeReport().camera;
-  const ObjectReport read = WriteAndRead(empty);
+  const ObjectResults read = WriteAndRead(empty);
   EXPECT_TRUE(read.objects.empty());
   EXPECT_EQ(read.candidates, 0U);
 }
 
 TEST(ObjectFile, ClassesMayContainAnyBytes) {
-  ObjectReport report = MakeReport();
+  ObjectResults report = MakeReport();
   report.objects[0].label = "a\"b\\\xff\n";
   report.objects[0].votes = {{report.objects[0].label, 1.0}};
   EXPECT_TRUE(Json::accept(FormatObjects(report)));
 }
 
 TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
-  ObjectReport report = MakeReport();
+  ObjectResults report = MakeReport();
   report.objects[0].ellipsoid.half_axes.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(FormatObjects(report), CheckError);
   report = MakeReport();
-  report.objects[1].views[0].hull[0].x() = std::numeric_limits<double>::infinity();
+  report.objects[1].observations[0].hull[0].x() = std::numeric_limits<double>::infinity();
   EXPECT_THROW(FormatObservations(report), CheckError);
 }
 
@@ -243,7 +244,7 @@ void ExpectRefusal(const std::string& pointer, const Json& value,
 
 TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   const std::string object = "/objects/1/";
-  const std::string view = "/observations/2/";
+  const std::string observation = "/observations/2/";
   const std::string at = "objects_observations.json: observations[2].";
   ExpectRefusal("/version", 1, {"version is 1", "expected 2"});
   ExpectRefusal("/camera/fx", 0, {"objects.json: camera.fx is 0"});
@@ -271,18 +272,19 @@ TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   ExpectRefusal(
       object + "observations", 3,
       {"objects_observations.json: has 2 observations of object 9, expected 3", "same run"});
-  ExpectRefusal(view + "object", 8, {at + "object is 8", "in objects.json"});
-  ExpectRefusal(view + "keyframe", 1.5, {at + "keyframe is 1.5"});
-  ExpectRefusal(view + "score", 1e308, {at + "score is 1e+308", "from -1 to 1"});
+  ExpectRefusal(observation + "object", 8, {at + "object is 8", "in objects.json"});
+  ExpectRefusal(observation + "keyframe", 1.5, {at + "keyframe is 1.5"});
+  ExpectRefusal(observation + "score", 1e308, {at + "score is 1e+308", "from -1 to 1"});
   ExpectRefusal(object + "votes", {{"cup", 1e308}}, {"objects[1].votes.cup is 1e+308"});
-  ExpectRefusal(view + "timestamp", nullptr, {at + "timestamp is null"});
-  ExpectRefusal(view + "cam_from_world", "I", {at + "cam_from_world is \"I\""});
-  ExpectRefusal(view + "cut", 1, {at + "cut is 1", "true or false"});
-  ExpectRefusal(view + "hull", {{1, 2}, {3, 4}}, {at + "hull", "three corners"});
-  ExpectRefusal(view + "hull", {{0, 0}, {0, 5}, {5, 5}}, {at + "hull", "positive area"});
-  ExpectRefusal(view + "contour", {{1, 2, 3}}, {at + "contour is [[1,2,3]]"});
-  ExpectRefusal(view + "lines", {{1, 1, 0, 0}}, {at + "lines[0] is [1,1,0,0]", "unit length"});
-  ExpectRefusal(view + "lines", {{1, 0}}, {at + "lines[0]", "4 finite numbers"});
+  ExpectRefusal(observation + "timestamp", nullptr, {at + "timestamp is null"});
+  ExpectRefusal(observation + "cam_from_world", "I", {at + "cam_from_world is \"I\""});
+  ExpectRefusal(observation + "cut", 1, {at + "cut is 1", "true or false"});
+  ExpectRefusal(observation + "hull", {{1, 2}, {3, 4}}, {at + "hull", "three corners"});
+  ExpectRefusal(observation + "hull", {{0, 0}, {0, 5}, {5, 5}}, {at + "hull", "positive area"});
+  ExpectRefusal(observation + "contour", {{1, 2, 3}}, {at + "contour is [[1,2,3]]"});
+  ExpectRefusal(observation + "lines", {{1, 1, 0, 0}},
+                {at + "lines[0] is [1,1,0,0]", "unit length"});
+  ExpectRefusal(observation + "lines", {{1, 0}}, {at + "lines[0]", "4 finite numbers"});
 }
 
 TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {

@@ -66,8 +66,8 @@ struct Mesh {
   }
 };
 
-ReportedObject MakeObject(const std::string& label) {
-  ReportedObject object;
+ObjectResult MakeObject(const std::string& label) {
+  ObjectResult object;
   object.state = ObjectState::kMapped;
   object.label = label;
   object.ellipsoid = {Rigid3(ExpSo3({0.4, -0.3, 0.2}), {1.0, 2.0, 3.0}), {0.1, 0.2, 0.4}};
@@ -75,8 +75,8 @@ ReportedObject MakeObject(const std::string& label) {
 }
 
 TEST(ObjectsPly, ContainsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
-  const ReportedObject object = MakeObject("cup");
-  const Mesh mesh(FormatObjectsPly(std::vector<ReportedObject>{object, object}));
+  const ObjectResult object = MakeObject("cup");
+  const Mesh mesh(FormatObjectsPly(std::vector<ObjectResult>{object, object}));
   ASSERT_EQ(mesh.faces.size() % 2, 0U);
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
     EXPECT_NEAR(object.ellipsoid.RadialDistance(vertex), 0.0, 1e-6);
@@ -103,7 +103,7 @@ TEST(ObjectsPly, ContainsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
 
 TEST(ObjectsPly, TheColourDependsOnTheClassOnly) {
   const Mesh mesh(FormatObjectsPly(
-      std::vector<ReportedObject>{MakeObject("cup"), MakeObject("keyboard"), MakeObject("cup")}));
+      std::vector<ObjectResult>{MakeObject("cup"), MakeObject("keyboard"), MakeObject("cup")}));
   const size_t corners = mesh.vertices.size() / 3;
   EXPECT_EQ(mesh.colours.front(), mesh.colours.back());
   EXPECT_EQ(mesh.colours[0], mesh.colours[corners - 1]);
@@ -111,9 +111,9 @@ TEST(ObjectsPly, TheColourDependsOnTheClassOnly) {
 }
 
 TEST(ObjectsPly, CandidatesAreLeftOut) {
-  ReportedObject candidate = MakeObject("cup");
+  ObjectResult candidate = MakeObject("cup");
   candidate.state = ObjectState::kCandidate;
-  const Mesh mesh(FormatObjectsPly(std::vector<ReportedObject>{candidate}));
+  const Mesh mesh(FormatObjectsPly(std::vector<ObjectResult>{candidate}));
   EXPECT_TRUE(mesh.vertices.empty());
   EXPECT_TRUE(mesh.faces.empty());
 }

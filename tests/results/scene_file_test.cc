@@ -23,7 +23,7 @@ Scene MakeFileScene() {
       UprightBox{scene.objects[0].ellipsoid.world_from_object, Eigen::Vector3d(0.05, 0.05, 0.05)};
   scene.objects[0].covariance =
       ShapeCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-6 * Eigen::Matrix3d::Identity()};
-  scene.objects[0].views = 7;
+  scene.objects[0].observations = 7;
   scene.objects[0].first_seen = 1000.25;
   scene.objects[0].last_seen = 1002.5;
   scene.objects[0].quality = 0.75;

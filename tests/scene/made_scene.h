@@ -7,7 +7,7 @@
 
 #include "map/spanning_tree.h"
 #include "objects/made_objects.h"
-#include "report/object_report.h"
+#include "report/object_results.h"
 #include "scene/scene.h"
 
 namespace hullslam {

@@ -22,7 +22,7 @@ class MakeSceneTest : public ::testing::Test {
             Standing("bottle", {0.3, 0.0, 0.0}, {0.04, 0.04, 0.12})};
   }
   Scene Make(const UpDirection& up) const {
-    return MakeScene(map_, ReportObjects(map_, sensor_.camera), up);
+    return MakeScene(map_, CollectObjectResults(map_, sensor_.camera), up);
   }
 
   Sensor sensor_ = MakeObjectSensor();
@@ -35,7 +35,7 @@ TEST_F(MakeSceneTest, DescribesTheObjects) {
   const SceneObject& cup = scene.objects[1];
   EXPECT_EQ(cup.label, "cup");
   EXPECT_EQ(cup.shares.at("cup"), 1.0);
-  EXPECT_EQ(cup.views, 12U);
+  EXPECT_EQ(cup.observations, 12U);
   EXPECT_EQ(cup.first_seen, 10.0);
   EXPECT_EQ(cup.last_seen, 21.0);
   ASSERT_TRUE(cup.box && cup.covariance);

@@ -46,7 +46,7 @@ TEST(ObjectBody, OfABoxHasTheExtentsOfTheBoxAndNotOfTheEllipsoid) {
   const Eigen::Vector3d half(0.2, 0.1, 0.15);
   const MadeObject fitted = {"box", {Rigid3(), 1.25 * half}};
   std::vector<Detection> detections;
-  std::vector<ObjectView> views;
+  std::vector<ResolvedObservation> observations;
   detections.reserve(24);
   for (uint32_t i = 0; i < 24; ++i) {
     const Rigid3 camera = CameraOnCircle(0.26 * i, 2.5, i % 2 == 0 ? 1.2 : 0.1);
@@ -63,10 +63,10 @@ TEST(ObjectBody, OfABoxHasTheExtentsOfTheBoxAndNotOfTheEllipsoid) {
       }
       line.line.offset = -reach;
     }
-    views.push_back({KeyframeId(i), camera, &detection});
+    observations.push_back({KeyframeId(i), camera, &detection});
   }
   const ObjectBody body =
-      MeasureBody(ObjectId(1), fitted.ellipsoid, sensor.camera, views, kUpright);
+      MeasureBody(ObjectId(1), fitted.ellipsoid, sensor.camera, observations, kUpright);
   const UprightBox box = BoxOf(body, kUpright);
   EXPECT_NEAR(box.half_extents.head<2>().maxCoeff(), half.x(), 0.015);
   EXPECT_NEAR(box.half_extents.head<2>().minCoeff(), half.y(), 0.015);
@@ -78,7 +78,7 @@ TEST(ObjectBody, LinesThatPointMoreSidewaysThanDownDoNotShowTheBottom) {
   const Sensor sensor = MakeObjectSensor();
   const MadeObject made = Standing("plant", {0.0, 0.0, 0.0}, {0.2, 0.2, 0.3});
   std::vector<Detection> detections;
-  std::vector<ObjectView> views;
+  std::vector<ResolvedObservation> observations;
   detections.reserve(2);
   for (uint32_t i = 0; i < 2; ++i) {
     const Rigid3 camera = CameraOnCircle(0.3 + i, 2.5, 0.8);
@@ -86,10 +86,10 @@ TEST(ObjectBody, LinesThatPointMoreSidewaysThanDownDoNotShowTheBottom) {
     for (SilhouetteLine& line : detection.lines) {
       line.is_one_sided = line.line.normal.y() > 0.8;  // those at 45 degrees are free
     }
-    views.push_back({KeyframeId(i), camera, &detection});
+    observations.push_back({KeyframeId(i), camera, &detection});
   }
-  EXPECT_FALSE(
-      MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen);
+  EXPECT_FALSE(MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, observations, kUpright)
+                   .is_bottom_seen);
 }
 
 TEST(ObjectBody, BottomIsNotSeenIfItIsAlwaysCutOff) {
@@ -100,9 +100,9 @@ TEST(ObjectBody, BottomIsNotSeenIfItIsAlwaysCutOff) {
   for (SilhouetteLine& line : detection.lines) {
     line.is_one_sided = line.line.normal.y() > 0.0;  // the lower side
   }
-  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
-  EXPECT_FALSE(
-      MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen);
+  const std::vector<ResolvedObservation> observations = {{KeyframeId(0), camera, &detection}};
+  EXPECT_FALSE(MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, observations, kUpright)
+                   .is_bottom_seen);
 }
 
 TEST(ObjectBody, GapAndOverlapOfFootprints) {
@@ -148,7 +148,8 @@ TEST(ObjectBody, TheBoxIsTheOneOfLeastArea) {
   }
 }
 
-// Whether the lower side was seen if a view has so many lower lines that are cut off and free.
+// Whether the lower side was seen if an observation has so many lower lines that are cut off and
+// free.
 bool IsBottomSeen(int cut, int free) {
   const Sensor sensor = MakeObjectSensor();
   const MadeObject made = Standing("couch", {0.0, 0.0, 0.0}, {0.2, 0.1, 0.3});
@@ -161,8 +162,9 @@ bool IsBottomSeen(int cut, int free) {
     const double offset = -normal.dot(ellipse->center) - ellipse->HalfExtent(normal);
     detection.lines.push_back({{normal, offset}, i < cut});
   }
-  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
-  return MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen;
+  const std::vector<ResolvedObservation> observations = {{KeyframeId(0), camera, &detection}};
+  return MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, observations, kUpright)
+      .is_bottom_seen;
 }
 
 TEST(ObjectBody, AQuarterOfTheLowerLinesAndAtLeastThreeShowTheBottom) {

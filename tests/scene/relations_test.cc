@@ -16,16 +16,16 @@ namespace {
 // The relations of upright ellipsoids that were all seen together, as "0 on 1".
 std::vector<std::string> Describe(const std::vector<MadeObject>& objects) {
   std::vector<ObjectBody> bodies;
-  ViewStatistics views;
+  ObservationStatistics observations;
   for (uint32_t i = 0; i < objects.size(); ++i) {
     bodies.push_back(
         BodyOfEllipsoid(ObjectId(i), objects[i].ellipsoid, Eigen::Quaterniond::Identity()));
     for (uint32_t k = 0; k < objects.size(); ++k) {
-      views.joint[{ObjectId(i), ObjectId(k)}].views = 5;
+      observations.joint[{ObjectId(i), ObjectId(k)}].observations = 5;
     }
   }
   std::vector<std::string> texts;
-  for (const Relation& relation : FindStandingRelations(bodies, views).relations) {
+  for (const Relation& relation : FindStandingRelations(bodies, observations).relations) {
     texts.push_back(std::to_string(relation.subject.value) + " " +
                     std::string(ToString(relation.kind)) + " " +
                     std::to_string(relation.object.value));
@@ -85,11 +85,13 @@ TEST(StandingRelations, OfTwoCarriersTheOneWithTheNearestTopCounts) {
 }
 
 TEST(ViewRelations, NeedEnoughViewsAndTellTheirShare) {
-  ViewStatistics views;
-  views.joint[{ObjectId(1), ObjectId(2)}] = {.views = 10, .in_front = 6, .mask_inside = 0};
-  views.joint[{ObjectId(1), ObjectId(3)}] = {.views = 2, .in_front = 2, .mask_inside = 0};
-  views.hidden[{ObjectId(2), ObjectId(1)}] = {.views = 10, .hidden = 4, .most = 0.7};
-  const std::vector<Relation> relations = FindViewRelations(views);
+  ObservationStatistics observations;
+  observations.joint[{ObjectId(1), ObjectId(2)}] = {
+      .observations = 10, .in_front = 6, .mask_inside = 0};
+  observations.joint[{ObjectId(1), ObjectId(3)}] = {
+      .observations = 2, .in_front = 2, .mask_inside = 0};
+  observations.hidden[{ObjectId(2), ObjectId(1)}] = {.observations = 10, .hidden = 4, .most = 0.7};
+  const std::vector<Relation> relations = FindObservedRelations(observations);
   ASSERT_EQ(relations.size(), 2U);
   EXPECT_EQ(relations[0].kind, RelationKind::kInFrontOf);
   EXPECT_EQ(relations[0].object, ObjectId(2));
@@ -99,12 +101,13 @@ TEST(ViewRelations, NeedEnoughViewsAndTellTheirShare) {
 }
 
 // The relations of a knob and the door that it is in or on, if the knob's mask was inside the
-// door's in so many of the common views.
-Texts RelationsOfAKnob(size_t views, size_t inside) {
+// door's in so many of the common observations.
+Texts RelationsOfAKnob(size_t observations, size_t inside) {
   const std::vector<MadeObject> objects = {Standing("knob", {0.0, 0.0, 0.6}, {0.03, 0.03, 0.03}),
                                            Standing("door", {0.0, 0.0, 0.0}, {0.4, 0.4, 0.5})};
-  ViewStatistics statistics;
-  statistics.joint[{ObjectId(0), ObjectId(1)}] = {.views = views, .mask_inside = inside};
+  ObservationStatistics statistics;
+  statistics.joint[{ObjectId(0), ObjectId(1)}] = {.observations = observations,
+                                                  .mask_inside = inside};
   std::vector<ObjectBody> bodies;
   for (uint32_t i = 0; i < 2; ++i) {
     bodies.push_back(
@@ -164,20 +167,20 @@ TEST(StandingRelations, ThingsOnOneThingAreBesideEachOther) {
 }
 
 TEST(ViewRelations, TooFewViewsOrATooSmallShareAreNoRelation) {
-  const auto count = [](const JointViews& joint, const HiddenViews& hidden) {
-    ViewStatistics views;
-    views.joint[{ObjectId(1), ObjectId(2)}] = joint;
-    views.hidden[{ObjectId(1), ObjectId(2)}] = hidden;
-    return FindViewRelations(views).size();
+  const auto count = [](const JointObservations& joint, const HiddenCounts& hidden) {
+    ObservationStatistics observations;
+    observations.joint[{ObjectId(1), ObjectId(2)}] = joint;
+    observations.hidden[{ObjectId(1), ObjectId(2)}] = hidden;
+    return FindObservedRelations(observations).size();
   };
-  const JointViews no_joint = {.views = 9, .in_front = 0};
-  const HiddenViews no_hidden = {.views = 9, .hidden = 0};
-  EXPECT_EQ(count({.views = 3, .in_front = 2}, no_hidden), 1U);
-  EXPECT_EQ(count({.views = 10, .in_front = 5}, no_hidden), 1U);
-  EXPECT_EQ(count({.views = 10, .in_front = 4}, no_hidden), 0U);
-  EXPECT_EQ(count(no_joint, {.views = 12, .hidden = 3}), 1U);
-  EXPECT_EQ(count(no_joint, {.views = 13, .hidden = 3}), 0U);
-  EXPECT_EQ(count(no_joint, {.views = 2, .hidden = 2}), 0U);
+  const JointObservations no_joint = {.observations = 9, .in_front = 0};
+  const HiddenCounts no_hidden = {.observations = 9, .hidden = 0};
+  EXPECT_EQ(count({.observations = 3, .in_front = 2}, no_hidden), 1U);
+  EXPECT_EQ(count({.observations = 10, .in_front = 5}, no_hidden), 1U);
+  EXPECT_EQ(count({.observations = 10, .in_front = 4}, no_hidden), 0U);
+  EXPECT_EQ(count(no_joint, {.observations = 12, .hidden = 3}), 1U);
+  EXPECT_EQ(count(no_joint, {.observations = 13, .hidden = 3}), 0U);
+  EXPECT_EQ(count(no_joint, {.observations = 2, .hidden = 2}), 0U);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-// Views of an object from a part of a circle, whose lines have noise of `noise_px`.
+// Observations of an object from a part of a circle, whose lines have noise of `noise_px`.
 class NoisyViews {
  public:
   // Each line is there `copies` times.
@@ -29,18 +29,18 @@ class NoisyViews {
       for (size_t k = 1; k < copies; ++k) {
         detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());
       }
-      views_.push_back({KeyframeId(i), camera, &detection});
+      observations_.push_back({KeyframeId(i), camera, &detection});
     }
   }
   std::optional<ShapeCovariance> Covariance(const MadeObject& object) const {
-    return CovarianceOf(sensor_.camera, object.ellipsoid, object.ellipsoid, views_);
+    return CovarianceOf(sensor_.camera, object.ellipsoid, object.ellipsoid, observations_);
   }
 
  private:
   static constexpr uint32_t kCount = 30;
   Sensor sensor_ = MakeObjectSensor();
   std::vector<Detection> detections_;
-  std::vector<ObjectView> views_;
+  std::vector<ResolvedObservation> observations_;
 };
 
 const MadeObject kCup = Standing("cup", {0.1, 0.0, 0.0}, {0.1, 0.12, 0.15});

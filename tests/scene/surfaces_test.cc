@@ -16,8 +16,8 @@ class SurfacesTest : public ::testing::Test {
         BodyOfEllipsoid(id, Standing("cup", base, Eigen::Vector3d::Constant(radius)).ellipsoid,
                         Eigen::Quaterniond::Identity()));
     for (const ObjectBody& other : bodies_) {
-      views_.joint[{id, other.id}].views = 1;
-      views_.joint[{other.id, id}].views = 1;
+      observations_.joint[{id, other.id}].observations = 1;
+      observations_.joint[{other.id, id}].observations = 1;
     }
   }
   std::vector<Surface> Find() const {
@@ -25,11 +25,11 @@ class SurfacesTest : public ::testing::Test {
     for (const ObjectBody& body : bodies_) {
       standing.push_back(&body);
     }
-    return FindSurfaces(standing, FloorHeight(bodies_), views_);
+    return FindSurfaces(standing, FloorHeight(bodies_), observations_);
   }
 
   std::vector<ObjectBody> bodies_;
-  ViewStatistics views_;
+  ObservationStatistics observations_;
 };
 
 TEST_F(SurfacesTest, AreTheFloorAndATable) {
@@ -102,7 +102,7 @@ TEST_F(SurfacesTest, ObjectsThatNoKeyframeHasSeenTogetherAreOnNoCommonSurface) {
   Add({0.0, 0.0, 0.75}, 0.05);
   Add({0.2, 0.0, 0.75}, 0.05);
   ASSERT_EQ(Find().size(), 2U);
-  views_.joint.clear();
+  observations_.joint.clear();
   EXPECT_EQ(Find().size(), 1U);
 }
 

@@ -130,14 +130,6 @@ class DegradeSequenceTest(unittest.TestCase):
         truth = [(float(row[0]), float(row[1])) for row in self.rows("groundtruth.txt")]
         np.testing.assert_allclose(truth, [(10.0, 10.0), (10.1, 10.1), (10.2, 10.4), (10.3, 10.5)])
 
-    def test_an_image_that_is_shown_several_times(self):
-        self.run_script("--stall", "3/4")
-        self.assert_stamps(STAMPS)
-        self.assertEqual([self.image_of(stamp) for stamp in STAMPS], list("01114555"))
-        self.assertEqual(self.image_of(10.3, "depth"), "d1")
-        truth = [float(row[1]) for row in self.rows("groundtruth.txt")]
-        np.testing.assert_allclose(truth, [10.0, 10.1, 10.1, 10.1, 10.4, 10.5, 10.5, 10.5])
-
     def test_masks(self):
         self.run_script("--mask-shift", 6.4)
         for before, after in zip(yolo_masks.read_masks(self.sequence / "masks/0.txt"),
@@ -167,20 +159,6 @@ class DegradeSequenceTest(unittest.TestCase):
         self.assertEqual(depth[0].dtype, np.uint16)
         self.assertEqual({int(value) for value in np.unique(depth)}, {0, 5000})
         self.assertTrue(0.2 < np.mean(np.array(depth) == 0) < 0.8)
-
-    @unittest.skipUnless(cv2, "needs OpenCV for Python")
-    def test_a_turned_sequence(self):
-        pixels = np.zeros((32, 64, 3), np.uint8)
-        pixels[2:6, 50:54] = 255  # at the top right
-        cv2.imwrite(str(self.sequence / "rgb/0.png"), pixels)
-        self.run_script("--turn", 90)
-        turned = cv2.imread(str(self.out / "rgb/0.png"))
-        self.assertEqual(turned.shape, (64, 32, 3))
-        self.assertEqual(turned[12, 4, 0], 255, "now at the top left")
-        self.assertEqual(cv2.imread(str(self.out / "depth/d0.png"),
-                                    cv2.IMREAD_UNCHANGED).shape, (64, 32))
-        np.testing.assert_allclose(yolo_masks.read_masks(self.out / "masks/0.txt")[1][1],
-                                   [[0.3, 0.7], [0.3, 0.6], [0.4, 0.6]])
 
     @unittest.skipUnless(cv2, "needs OpenCV for Python")
     def test_a_resized_sequence(self):
@@ -217,7 +195,7 @@ class DegradeSequenceTest(unittest.TestCase):
     @unittest.skipUnless(cv2, "needs OpenCV for Python")
     def test_each_random_disturbance_repeats_with_its_seed(self):
         for option, amount in (("--late", 50), ("--noise", 5), ("--depth-holes", 0.5),
-                               ("--mask-shift", 3), ("--mask-rough", 1), ("--mask-drop", 0.5),
+                               ("--mask-shift", 3), ("--mask-drop", 0.5),
                                ("--mask-confuse", 0.5), ("--mask-swap", 0.5)):
             found = []
             for name, seed in (("first", 3), ("again", 3), ("other", 4)):
@@ -242,21 +220,6 @@ class DegradeSequenceTest(unittest.TestCase):
         self.assert_stamps([10.0, 10.1, 10.3, 10.4, 10.6, 10.7])
         self.assertEqual(sorted(path.stem for path in (self.out / "masks").iterdir()),
                          ["0", "1", "3", "4", "6", "7"])
-
-    def test_rough_outlines_keep_their_place(self):
-        angles = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
-        circle = 100.0 + 50.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        radii = []
-        for seed in range(20):
-            rough = disturbances.rough_outline(circle, 2.0, np.random.default_rng(seed))
-            radii.append(np.linalg.norm(rough - 100.0, axis=1))
-            moves = np.linalg.norm(np.diff(rough, axis=0), axis=1)
-            self.assertLess(moves.max(), 3.0, "neighbouring points stay together")
-        self.assertAlmostEqual(np.mean(radii), 50.0, delta=0.3)
-        # Between the points with independent errors, the deviation is smaller.
-        self.assertAlmostEqual(np.std(radii), 2.0, delta=0.5)
-        np.testing.assert_array_equal(
-            disturbances.rough_outline(circle, 0.0, np.random.default_rng(0)), circle)
 
     def test_masks_may_be_left_out(self):
         (self.sequence / "masks/0.txt").write_text("broken")
@@ -284,7 +247,7 @@ class DegradeSequenceTest(unittest.TestCase):
 
     def test_images_of_icl_nuim_have_no_stamps(self):
         self.make_icl()
-        for arguments in (["--late", 5], ["--stall", "2/4"], ["--even", "--missing", "1/4"]):
+        for arguments in (["--late", 5], ["--even", "--missing", "1/4"]):
             self.out = self.dir / arguments[0][2:]
             self.assertIn("numbers", self.refuse(*arguments))
         list_file = self.sequence / "associations.txt"
@@ -301,12 +264,12 @@ class DegradeSequenceTest(unittest.TestCase):
 
     def test_bad_amounts(self):
         for arguments in (["--missing", "4/4"], ["--missing", "x"], ["--missing", "1/2/3"],
-                          ["--stall", "0/3"], ["--stall", "a/b"], ["--late", "nan"],
+                          ["--late", "nan"],
                           ["--late", -1], ["--early", 250], ["--pairs", "x"], ["--blur", 0],
                           ["--blur", "inf"], ["--brightness", -1], ["--brightness", 11],
                           ["--noise", -1], ["--noise", 256], ["--depth-holes", 1.1],
-                          ["--depth-holes", "nan"], ["--turn", 45], ["--mask-shift", -1],
-                          ["--mask-rough", "x"], ["--mask-drop", 2], ["--mask-confuse", -0.1],
+                          ["--depth-holes", "nan"], ["--mask-shift", -1],
+                          ["--mask-drop", 2], ["--mask-confuse", -0.1],
                           ["--mask-swap", "nan"], ["--seed", -1], ["--seed", "x"],
                           ["--masks", self.dir / "none"], ["--no-masks", "--masks", "x"]):
             with self.subTest(arguments):

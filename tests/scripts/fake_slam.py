@@ -76,15 +76,6 @@ else:
         {"mapped": [{"center_share": 0.1}]}, {"mapped": []}, {"mapped": [{"center_share": 0.3}]}]}}))
 """
 
-# `view RUN_DIR --report`.
-VIEW = r"""#!/usr/bin/python3
-import pathlib, sys
-folder = pathlib.Path(sys.argv[1])
-if sys.argv[2:] != ["--report"] or (folder / "report.html").exists():
-    sys.exit("error: bad usage, or made twice")
-(folder / "report.html").write_text("<html></html>")
-"""
-
 # `make_synthetic FOLDER`, and with --suite two sequences, one of each data set.
 MAKE_SYNTHETIC = r"""#!/usr/bin/python3
 import json, pathlib, sys
@@ -169,7 +160,7 @@ def write_programs(folder):
     folder.mkdir(parents=True)
     renderer = MAKE_SYNTHETIC.replace("FOLDER", json.dumps(str(pathlib.Path(__file__).parent)))
     for name, text in (("rgbd_tum", SLAM), ("stereo_folder", SLAM), ("mono_tum", SLAM), ("rgbd_icl", SLAM),
-                       ("mono_icl", SLAM), ("evaluate", EVALUATE), ("view", VIEW),
+                       ("mono_icl", SLAM), ("evaluate", EVALUATE),
                        ("make_synthetic", renderer)):
         (folder / name).write_text(text)
         (folder / name).chmod(0o755)

@@ -19,7 +19,7 @@ import unittest
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "reproduce_tables.py"
 PROGRAMS = os.environ.get("HULLSLAM_BIN", "")
 FRAMES = 24  # enough for objects, and few enough for a test
-TABLES = ("tables.md", "tables.tex", "tables.csv", "tables.json", "index.html")
+TABLES = ("tables.md", "tables.tex", "tables.csv", "tables.json")
 
 
 @unittest.skipUnless(PROGRAMS, "HULLSLAM_BIN is not set")

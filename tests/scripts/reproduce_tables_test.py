@@ -28,8 +28,7 @@ class RunsTest(TablesTest):
         self.assertEqual(len(degraded), 2)
         for call in degraded:  # the name of the degraded folder does not tell the camera
             self.assertIn(f" --settings {self.desk}/camera.yaml ", call)
-        self.assertEqual(sorted(self.files()), ["index.html", "tables.csv", "tables.json",
-                                                "tables.md", "tables.tex"])
+        self.assertEqual(sorted(self.files()), ["tables.csv", "tables.json", "tables.md", "tables.tex"])
         self.assertEqual([path for path in (self.out / "degraded").rglob("seed-*") if path.is_dir()],
                          [], "degraded sequences are removed after their runs")
         self.assertTrue((self.out / "runs/desk/rgbd/good/seed-1/log.txt").exists())
@@ -105,16 +104,6 @@ class RunsTest(TablesTest):
         self.succeed("--seeds", 1)
         self.assertIn("11 of them done; 0 images", self.succeed("--seeds", 1, "--list").stdout)
 
-    def test_reports_of_the_runs_whose_curves_are_shown(self):
-        arguments = ("--seeds", 3, "--tables", "I", "--modes", "rgbd")
-        self.succeed(*arguments)
-        self.assertNotIn("report.html", (self.out / "tables" / "index.html").read_text())
-        for _ in range(2):
-            self.succeed(*arguments, "--reports")
-            self.assertIn('<a href="../runs/desk/rgbd/bad/seed-1/out/report.html">bad</a>',
-                          (self.out / "tables" / "index.html").read_text())
-        self.assertEqual(len(list(self.out.rglob("report.html"))), 3, "one for each row")
-
     def test_sequences_without_depth_or_masks(self):
         mono = fake_slam.write_tum(self.dir / "mono", with_depth=False)
         shutil.rmtree(mono / "masks")
@@ -142,7 +131,6 @@ class CompareTest(TablesTest):
         self.assertIn("| good | rgbd | +0.0 % (p 1, 6 pairs), unclear |", text)
         found = json.loads((self.out / "tables" / "compare.json").read_text())
         self.assertEqual(found["rows"][0]["common"], 6)
-        self.assertIn("Differences since abc1234", (self.out / "tables" / "index.html").read_text())
 
 
 if __name__ == "__main__":

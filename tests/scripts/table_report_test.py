@@ -4,7 +4,6 @@
 ranks, and the files for readers."""
 
 import csv
-import html.parser
 import io
 import json
 import pathlib
@@ -19,12 +18,12 @@ import fake_slam
 from fake_tables import DEFINITIONS, SCRIPT
 
 sys.path.insert(0, str(SCRIPT.parent))
-from paper_tables import files, page, plots, tables  # noqa: E402
+from paper_tables import files, tables  # noqa: E402
 from paper_tables.definitions import read_definitions  # noqa: E402
 from paper_tables.plan import Request, Tools, make_plan  # noqa: E402
 from paper_tables.tables import Report, compare_reports, read_report  # noqa: E402
 from paper_tables.sequences import Sequence  # noqa: E402
-from paper_tables.text import Text, claims_grid, grids, number, ranking_grid, Grid  # noqa: E402
+from paper_tables.text import claims_grid, grids, number, ranking_grid  # noqa: E402
 from paper_tables.figures import FIGURES, of_true_objects  # noqa: E402
 
 PAPER = {"source": "a paper & its 100 % _tables_",
@@ -35,9 +34,7 @@ class StatisticsTest(unittest.TestCase):
     def test_median_and_spread(self):
         found = tables.spread({0: 3.0, 1: None, 2: 1.0, 3: 2.0})
         self.assertEqual((found["median"], found["min"], found["max"]), (2.0, 1.0, 3.0))
-        self.assertEqual(tables.median_run(found), 3)
         self.assertIsNone(tables.spread({0: None}))
-        self.assertEqual(tables.median_run(tables.spread({4: 1.0, 2: 3.0})), 2, "of equal ones the first")
 
     def test_differences(self):
         base = {("a", seed): 0.010 for seed in range(6)}
@@ -190,30 +187,6 @@ class ReportTest(unittest.TestCase):
             self.assertTrue(text.isascii())
             self.assertNotEqual(text, f"a{character}b")
 
-    def test_page(self):
-        text = page.page(self.report(), self.dir, None)
-
-        class Checker(html.parser.HTMLParser):
-            links, pictures, sources = [], 0, []
-
-            def handle_starttag(self, tag, attributes):
-                found = dict(attributes)
-                self.pictures += tag == "svg"
-                self.links += [found[key] for key in ("href", "xlink:href") if tag == "a" and key in found]
-                self.sources += [found[key] for key in ("src",) if key in found]
-        checker = Checker()
-        checker.feed(text)
-        # Box plots of tables I and II, curves of two sequences, each in two modes; levels in one.
-        self.assertEqual(checker.pictures, 2 * 2 + 2 * 2 + 1)
-        self.assertEqual(checker.sources, [], "the page needs no other file")
-        self.assertFalse("http://" in re.sub(r"http://www.w3.org\S*", "", text))
-        runs = {link for link in checker.links if link.startswith("../runs/")}
-        self.assertEqual(runs, {f"../runs/{name}/" for name in self.results})
-        for link in checker.links:
-            if link.startswith("../"):
-                self.assertTrue((self.dir / "tables" / link).resolve().is_dir(), link)
-        self.assertTrue(page.page(self.report(), self.dir, None) == text, "the same bytes each time")
-
     def test_a_scale_has_the_level_of_the_rows_at_its_place(self):
         path = self.dir / "tables.yaml"
         path.write_text(DEFINITIONS.replace("[features, mask_drop]", "[features]").replace(
@@ -227,21 +200,11 @@ class ReportTest(unittest.TestCase):
         grid, = grids(report, report.blocks[0])
         self.assertEqual([(row[0].text, row[1].text) for row in grid.rows if len(row) > 1],
                          2 * [("features", "100"), ("features", "300"), ("features", "500")])
-        picture = plots.level_plot(report, report.blocks[0])
-        self.assertIn("desk: features", picture)
-        self.assertNotIn("none<", picture)
-
-    def test_texts_are_escaped_in_the_page(self):
-        grid = Grid("<a>", ["x"], [[Text("<script>"), Text("&")]], ["failed: a/b: <i>"])
-        text = "".join(page.grid_html(grid, 2))
-        self.assertIn("<td>&lt;script&gt;</td><td>&amp;</td>", text)
-        self.assertIn('failed: <a href="../runs/a/b/">a/b</a>: &lt;i&gt;', text)
 
     def test_a_report_without_any_result(self):
         self.results = {name: None for name in self.results}
         report = self.report()
         self.assertIn("| – | – | 0, 3 not run |", files.markdown(report))
-        self.assertIn("0, 3 not run", page.page(report, self.dir, None))
         files.latex(report)
         self.assertEqual(report.claims, [])
 

@@ -40,18 +40,24 @@ TEST(OpenImages, FoldersAreKnownByWhatIsInThem) {
   const TemporaryFolder folder;
   for (const char* const name :
        {"tum/rgb/1.500000.png", "tum/rgb/1.600000.png", "photos/IMG_2.jpg", "photos/IMG_10.jpg",
-        "pairs/left/000001.png", "pairs/left/000002.png", "kitti/image_2/000000.png"}) {
+        "pairs/left/000001.png", "pairs/left/000002.png", "kitti/image_2/000000.png",
+        "lab/rgb_0/7.png"}) {
     WriteImage(folder.path() / name);
   }
   for (const char* const name :
        {"pairs/right/000001.png", "pairs/right/000002.png", "kitti/image_3/000000.png"}) {
     WriteImage(folder.path() / name, false);
   }
+  folder.Write("lab/rgb.csv", "");
   folder.Write("kitti/times.txt", "0.0\n");
   folder.Write("kitti/calib.txt",
                "P2: 10 0 16 0 0 10 12 0 0 0 1 0\nP3: 10 0 16 -5 0 10 12 0 0 0 1 0\n");
-  for (const auto& [name, stem] : std::vector<std::pair<std::string, std::string>>{
-           {"tum", "1.500000"}, {"photos", "IMG_2"}, {"pairs", "000001"}, {"kitti", "000000"}}) {
+  for (const auto& [name, stem] :
+       std::vector<std::pair<std::string, std::string>>{{"tum", "1.500000"},
+                                                        {"photos", "IMG_2"},
+                                                        {"pairs", "000001"},
+                                                        {"kitti", "000000"},
+                                                        {"lab", "7"}}) {
     const ImageSequence sequence = OpenImages(folder.path() / name);
     EXPECT_EQ(FirstStem(sequence), stem);
     ExpectRed(sequence);

@@ -7,7 +7,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "hullslam/sequences/vslamlab_sequence.h"
 #include "support/expect_error.h"
 #include "support/made_view.h"
 #include "support/temporary_folder.h"
@@ -63,32 +62,13 @@ TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
   EXPECT_EQ(sequence.frames[0].depth, folder.path() / "tum" / "d.png");
 }
 
-TEST(RunSequence, OfVslamlabIsOpenedByItsListWhereverItIsNow) {
-  const TemporaryFolder folder;
-  folder.Write("lab/rgb.csv",
-               "ts_left (ns),path_left,ts_d (ns),path_d\n1000000000,a.png,1000000000,d.png\n");
-  for (const char* const name : {"lab/a.png", "lab/d.png"}) {
-    folder.Write(name, "");
-  }
-  const std::filesystem::path lab = folder.path() / "lab";
-  const ImageSequence first = OpenVslamlabSequence(lab, lab / "rgb.csv", "left", "d").images;
-  const std::filesystem::path moved = folder.path() / "moved";
-  std::filesystem::rename(lab, moved);
-  const SequenceOfRun run{.path = lab, .dataset = first.dataset, .choices = first.choices};
-  const ImageSequence again = OpenRunSequence(run, moved, MadeCamera(), /*use_depth=*/true);
-  ASSERT_EQ(again.frames.size(), 1U);
-  EXPECT_EQ(again.frames[0].image, moved / "a.png");
-  EXPECT_EQ(again.frames[0].depth, moved / "d.png");
-  EXPECT_TRUE(OpenRunSequence(run, moved, MadeCamera()).frames[0].depth.empty());
-}
-
 TEST(RunSequence, OfAnUnknownDataSetIsRefused) {
   const TemporaryFolder folder;
   ExpectInputError([&] { OpenRunSequence({}, folder.path() / "gone", MadeCamera()); },
                    {"gone", "does not say of which data set", "repeat the run"});
   ExpectInputError(
       [&] { OpenRunSequence({.path = {}, .dataset = "kinect"}, folder.path(), MadeCamera()); },
-      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, bag_stereo, video, vslamlab"});
+      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, bag_stereo, video"});
 }
 
 }  // namespace

@@ -42,6 +42,13 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
     rotation >> number;
     EXPECT_NEAR(number, expected, 1e-9);
   }
+  const Trajectory read = AsRead(sequence, {{1.0, Rigid3()}});
+  EXPECT_EQ(read[0].world_from_cam.rotation.coeffs(), q.coeffs()) << "of the camera as read";
+  sequence.converted_groundtruth = read;
+  EXPECT_LT(ReadGroundtruth(sequence)->front().world_from_cam.rotation.angularDistance(
+                Eigen::Quaterniond::Identity()),
+            1e-9)
+      << "of the rectified camera";
   InstanceMask mask;
   mask.outlines = {{{40.0, 20.0}, {50.0, 20.0}, {50.0, 25.0}}};
   sequence.fit_mask(mask);
@@ -49,6 +56,10 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
       pair.grey.at<uint8_t>(cv::Point(40, static_cast<int>(std::lround(mask.outlines[0][0].y())))),
       100)
       << "the mask follows the line";
+  InstanceMask right_mask;
+  right_mask.outlines = {{{40.0, 24.0}, {50.0, 24.0}, {50.0, 29.0}}};
+  sequence.fit_right_mask(right_mask);
+  EXPECT_NEAR(right_mask.outlines[0][0].y(), mask.outlines[0][0].y(), 1e-6);
   PinholeCamera other = rectifier->camera();
   other.width = 40;
   ExpectInputError([&] { sequence.load(frame, other); }, {"left.png", "80x60", "40x60"});

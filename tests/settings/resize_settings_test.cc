@@ -59,13 +59,13 @@ TEST(ResizeSettings, TheReportHasTheSizeOfTheImagesAsRead) {
       folder.Write("camera.yaml",
                    "Camera.fx: 600\nCamera.fy: 600\nCamera.cx: 639.5\nCamera.cy: 359.5\n"
                    "Camera.width: 1280\nCamera.height: 720\nCamera.imageScale: 0.5\n");
-  SettingsReport report;
+  SettingsNotes report;
   const SystemOptions options = ReadSettings(file, {}, report);
   EXPECT_EQ(options.camera.width, 640);
   EXPECT_EQ(options.camera.fx, 300.0);
   EXPECT_EQ(report.read_width, 1280);
   EXPECT_EQ(report.read_height, 720);
-  SettingsReport unchanged;
+  SettingsNotes unchanged;
   const std::vector<std::string> overrides = {"Camera.imageScale=1"};
   EXPECT_EQ(ReadSettings(file, {.overrides = overrides}, unchanged).camera.cx, 639.5);
   EXPECT_EQ(unchanged.read_width, 0);

@@ -154,7 +154,7 @@ TEST_F(Settings, AFileReplacesThePresetAndOverridesReplaceBoth) {
   const auto file = folder_.Write(
       "camera.yaml", std::string(kMinimal) + "objects.pose.sigma: 4\nloop.min_matches: 26\n");
   const std::vector<std::string> overrides = {"loop.min_matches=27"};
-  SettingsReport report;
+  SettingsNotes report;
   const SystemOptions options =
       ReadSettings(file, {.preset = &preset, .overrides = overrides}, report);
   EXPECT_EQ(options.objects.pose.constraint.sigma_px, 4.0);
@@ -177,7 +177,7 @@ TEST_F(Settings, ACalibrationReplacesThePresetToo) {
       .name = "made",
       .file = "made.yaml",
       .settings = {{"Camera.fps", "10", "made.yaml:2"}, {"loop.min_matches", "25", "made.yaml:3"}}};
-  SettingsReport report;
+  SettingsNotes report;
   const CameraCalibration calibration{.camera = Read(kMinimal).camera, .frames_per_second = 20.0};
   const SystemOptions options =
       MakeSettings(calibration, "sensor.yaml", {.preset = &preset}, report);
@@ -204,7 +204,7 @@ TEST_F(Settings, MessagesNameTheSourceOfOverrides) {
   const auto file = folder_.Write("camera.yaml", kMinimal);
   const auto expect = [&](const std::string& assignment, const std::string& message) {
     const std::vector<std::string> overrides = {assignment};
-    SettingsReport report;
+    SettingsNotes report;
     ExpectInputError(
         [&] {
           ReadSettings(file, {.overrides = overrides, .overrides_origin = "Settings"}, report);
@@ -358,7 +358,7 @@ TEST_F(Settings, ACalibrationOfAnotherProgramIsReadAndNamed) {
       "cam0:\n  camera_model: pinhole\n  intrinsics: [190, 191, 254, 256]\n"
       "  distortion_model: equidistant\n  distortion_coeffs: [0.003, 0.0007, -0.002, 0.0002]\n"
       "  resolution: [512, 512]\n");
-  SettingsReport report;
+  SettingsNotes report;
   const std::vector<std::string> overrides = {"Camera.bf=20"};
   const SystemOptions options = ReadSettings(file, {.overrides = overrides}, report);
   EXPECT_EQ(options.camera.fy, 191.0);

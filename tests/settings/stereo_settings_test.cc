@@ -115,6 +115,9 @@ TEST_F(StereoSettings, BrokenFilesAreRefusedWithLineAndKey) {
   expect(Replaced("-47.90639384423901", "47.9"), {"to the left of the first one"});
   expect(Replaced("-47.90639384423901", "0"), {"the baseline is 0 m"});
   expect(Replaced("RIGHT.width: 752", "RIGHT.width: 640"), {"752x480", "640x480"});
+  expect(Replaced("LEFT.width: 752", "LEFT.width: 752000"),
+         {"left camera", "752000x480", "64000000"});
+  expect(Replaced("457.587, 0.0", "0.0, 0.0"), {"right camera", "Camera.fx"});
 }
 
 }  // namespace

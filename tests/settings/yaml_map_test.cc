@@ -22,18 +22,14 @@ class YamlMaps : public ::testing::Test {
 TEST_F(YamlMaps, GiveTextsNumbersListsAndMaps) {
   const YamlMap map = Read(
       "# comment\nmodel: pinhole\nfps: 30.0\nsize: [640, 480]\n"
-      "pose: {data: [1, 2e-1]}\ncameras:\n- name: a\n- name: b\n");
+      "pose: {data: [1, 2e-1]}\n");
   EXPECT_EQ(map.Text("model"), "pinhole");
   EXPECT_EQ(map.Number("fps"), 30.0);
   EXPECT_EQ(map.Numbers("size", 2, "width height"), (std::vector<double>{640.0, 480.0}));
   EXPECT_EQ(map.Map("pose").Numbers("data", 2, "a b"), (std::vector<double>{1.0, 0.2}));
-  const std::vector<YamlMap> cameras = map.Maps("cameras");
-  ASSERT_EQ(cameras.size(), 2u);
-  EXPECT_EQ(cameras[1].Text("name"), "b");
   EXPECT_TRUE(map.Has("fps"));
   EXPECT_FALSE(map.Has("FPS"));
   EXPECT_EQ(map.Pixels("size", 640.0), 640);
-  EXPECT_EQ(map.Texts("size", 2, "a b"), (std::vector<std::string>{"640", "480"}));
 }
 
 TEST_F(YamlMaps, WhatIsMissingOrOfAnotherKindIsNamedWithItsLine) {
@@ -46,12 +42,9 @@ TEST_F(YamlMaps, WhatIsMissingOrOfAnotherKindIsNamedWithItsLine) {
   ExpectInputError([&] { map.Numbers("size", 2, "w h"); }, {"c.yaml:3: size", "'wide'"});
   ExpectInputError([&] { map.Numbers("size", 3, "a b c"); }, {"2 value(s), expected 3", "a b c"});
   ExpectInputError([&] { map.Numbers("fps", 3, "a b c"); }, {"1 value(s), expected 3"});
-  ExpectInputError([&] { map.Texts("size", 3, "a b c"); }, {"c.yaml:3: size", "list of 3: a b c"});
-  ExpectInputError([&] { map.Texts("fps", 2, "a b"); }, {"c.yaml:2: fps is not a list of 2"});
   ExpectInputError([&] { map.Number("big"); }, {"c.yaml:5: big", "reasonable size"});
   ExpectInputError([&] { map.Number("nan"); }, {"c.yaml:6: nan"});
   ExpectInputError([&] { map.Map("model"); }, {"c.yaml:1: model is not a map"});
-  ExpectInputError([&] { map.Maps("model"); }, {"model is not a list of maps"});
   ExpectInputError([&] { map.Pixels("size", 0.5); }, {"c.yaml:3: size has the value '0.5'"});
   const YamlMap outer = Read("pose:\n  data: [1]\n");
   ExpectInputError([&] { outer.Map("pose").Numbers("data", 2, "a b"); },

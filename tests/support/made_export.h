@@ -30,7 +30,7 @@ inline SceneObject MadeSceneObject(uint32_t id, const std::string& label) {
   object.shares = {{label, 1.0}};
   object.ellipsoid = {Rigid3(ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {0.1 * id, 0.0, 2.0}),
                       {0.1, 0.2, 0.3}};
-  object.views = 5;
+  object.observations = 5;
   object.quality = 0.5;
   return object;
 }

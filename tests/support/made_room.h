@@ -96,17 +96,21 @@ class MadeRoom {
     }
   }
 
-  // Writes the left and right images into two folders of the sequence, and their true poses.
+  // Writes the left and right images into two folders of the sequence, and the true poses of the
+  // left camera. The path is that of the rectified pair; both cameras are turned from it.
   void WritePairs(const std::filesystem::path& folder, const std::string& left,
-                  const std::string& right, int frames, double baseline) const {
+                  const std::string& right, int frames, double baseline,
+                  const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) const {
     std::filesystem::create_directories(folder / left);
     std::filesystem::create_directories(folder / right);
     std::ofstream truth(folder / "groundtruth.txt");
     for (int i = 0; i < frames; ++i) {
       const std::string name = fmt::format("{:06}.png", i);
-      cv::imwrite((folder / left / name).string(), Render(i).grey);
-      cv::imwrite((folder / right / name).string(), RenderRight(i, baseline));
-      truth << FormatPose(0.1 * i, Pose(i));
+      const Rigid3 pose = Pose(i) * Rigid3{turn, Eigen::Vector3d::Zero()};
+      const Rigid3 of_right = Pose(i) * Rigid3{turn, {baseline, 0.0, 0.0}};
+      cv::imwrite((folder / left / name).string(), Render(pose).grey);
+      cv::imwrite((folder / right / name).string(), Render(of_right).grey);
+      truth << FormatPose(0.1 * i, pose);
     }
   }
 

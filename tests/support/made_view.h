@@ -9,15 +9,15 @@
 namespace hullslam {
 
 // A mapped sphere of 0.2 m, 2 m in front of a camera at the origin, which sees it as a square.
-inline ReportedObject MadeSphere(uint32_t id, const std::string& label) {
-  ReportedObject object;
+inline ObjectResult MadeSphere(uint32_t id, const std::string& label) {
+  ObjectResult object;
   object.id = ObjectId(id);
   object.state = ObjectState::kMapped;
   object.label = label;
   object.votes = {{label, 2.5}};
   object.ellipsoid = {Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}), {0.2, 0.2, 0.2}};
   object.fit.siou = 0.75;
-  ReportedView& view = object.views.emplace_back();
+  ObservationResult& view = object.observations.emplace_back();
   view.keyframe = KeyframeId(3);
   view.timestamp = 100.5;
   view.label = label;

@@ -29,7 +29,7 @@ class PoseObjectsTest : public ::testing::Test {
       object.ellipsoid = table_[k].ellipsoid;
       // All of them are mapped 10 % too small. The misfit samples of the keyframes show that.
       object.ellipsoid.half_axes *= 0.9;
-      const auto views = CollectViews(map_, object);
+      const auto views = ResolveObservations(map_, object);
       object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
       const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
       object.misfit_px = spread.plain_px;

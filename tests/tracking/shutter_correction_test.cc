@@ -334,7 +334,7 @@ InitialMap MakeViews(const SyntheticWorld& world, std::vector<SyntheticView>& se
 TEST_P(ShutterCorrection, CorrectsTheViewsOfAnInitialMap) {
   std::vector<SyntheticView> seen;
   InitialMap map = MakeViews(world_, seen);
-  CorrectViews(world_.sensor(), map);
+  CorrectFrames(world_.sensor(), map);
   ASSERT_EQ(map.views.size(), 3u);
   const double before = ErrorOf(*seen[1].frame, seen[1]);
   EXPECT_LT(ErrorOf(*map.views[1].frame, seen[1]), GetParam() == 1.0 ? 0.1 * before : 0.5 * before);
@@ -353,7 +353,7 @@ TEST_P(ShutterCorrection, LeavesTheViewsOfAnInitialMapIfTheirStampsAreWrong) {
       map.views[i].frame = WithStamp(*map.views[i].frame, static_cast<double>(i) * interval);
     }
     const std::vector<InitialMap::View> as_read = map.views;
-    CorrectViews(world_.sensor(), map);
+    CorrectFrames(world_.sensor(), map);
     for (size_t i = 0; i < map.views.size(); ++i) {
       EXPECT_EQ(map.views[i].frame, as_read[i].frame) << interval;
     }
@@ -376,7 +376,7 @@ TEST_F(GlobalShutterCamera, KeepsTheFrame) {
             view.frame);
   InitialMap map;
   map.views = {{view.frame, Rigid3()}};
-  CorrectViews(world_.sensor(), map);
+  CorrectFrames(world_.sensor(), map);
   EXPECT_EQ(map.views[0].frame, view.frame);
 }
 

@@ -106,16 +106,16 @@ TEST_F(RunPicturesTest, PicturesHaveOutlinesAndCutoutsShowTheObject) {
 
 TEST_F(RunPicturesTest, BestViewsAreLargeAndFromDifferentSides) {
   ViewModel model = MadeView(0);
-  ReportedObject& object = model.objects[0].object;
-  const ReportedView first = object.views[0];
-  object.views.push_back(first);
-  object.views[1].score = 0.9;  // the same side as the first view, but worse
-  object.views.push_back(first);
-  object.views[2].score = 0.5;
-  object.views[2].timestamp = 101.0;
+  ObjectResult& object = model.objects[0].object;
+  const ObservationResult first = object.observations[0];
+  object.observations.push_back(first);
+  object.observations[1].score = 0.9;  // the same side as the first view, but worse
+  object.observations.push_back(first);
+  object.observations[2].score = 0.5;
+  object.observations[2].timestamp = 101.0;
   // From the side: the camera is at (2, 0, 2) and looks along -x.
   const Eigen::Quaterniond turn = ExpSo3({0.0, std::numbers::pi / 2.0, 0.0});
-  object.views[2].cam_from_world = Rigid3(turn, turn * Eigen::Vector3d(-2.0, 0.0, -2.0));
+  object.observations[2].cam_from_world = Rigid3(turn, turn * Eigen::Vector3d(-2.0, 0.0, -2.0));
   Run(PictureTasks(0, model));
   ASSERT_EQ(model.objects[0].cutouts.size(), 3u);
   EXPECT_EQ(model.objects[0].cutouts[0].timestamp, 100.5);

@@ -32,7 +32,7 @@ class ViewOfRunTest : public ::testing::Test {
     const std::vector<Eigen::Vector3d> landmarks = {{0.0, 0.0, 1.0}, {1.0, 0.0, 2.0}};
     const std::vector<Eigen::Vector3d> centres(2, Eigen::Vector3d::Zero());
     folder_.Write("map.ply", FormatMapPly(landmarks, centres));
-    ObjectReport report;
+    ObjectResults report;
     report.sequence = "gone";
     report.camera = MadeCamera();
     report.objects = {MadeSphere(7, "cup")};

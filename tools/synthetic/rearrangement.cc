@@ -28,7 +28,7 @@ constexpr double kCameraRoom =
     0.5;  // least distance of the camera from an object in its new place, metres
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kFarthestMove = 3.0;  // metres
-constexpr int kLeastViews = 5;         // least number of views that show an object in its new place
+constexpr int kLeastObservations = 5;  // least number of views that show an object in its new place
 
 // A box that stands upright, in the world.
 struct UprightBox {
@@ -163,7 +163,7 @@ class PlaceFinder {
     for (int trial = 0; trial < kTrials; ++trial) {
       const UprightBox place = RandomPlace(box, support->height > 0.0);
       if ((place.centre - box.centre).norm() <= farthest && IsFree(object, place) &&
-          CountViews(place) >= kLeastViews) {
+          CountKeyframes(place) >= kLeastObservations) {
         return TurnAboutZ(place.yaw, place.centre);
       }
     }
@@ -218,7 +218,7 @@ class PlaceFinder {
 
   // The number of views in which the centre of the box is in the middle part of the image, near
   // enough for the depth sensor, and not hidden.
-  int CountViews(const UprightBox& place) const {
+  int CountKeyframes(const UprightBox& place) const {
     int count = 0;
     for (const Rigid3& world_from_cam : views_) {
       const Vector3d in_cam = Inverse(world_from_cam) * place.centre;

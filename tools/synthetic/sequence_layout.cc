@@ -41,12 +41,12 @@ std::string SequenceLayout::ImagesFromTumFolder() const {
 }
 
 bool SequenceLayout::IsEntry(std::string_view entry, std::string_view name) const {
-  static constexpr std::array<std::string_view, 9> kTumEntries = {
+  static constexpr std::array<std::string_view, 10> kTumEntries = {
       "rgb",       "depth",       "masks",           "rgb.txt",
       "depth.txt", "camera.yaml", "groundtruth.txt", "groundtruth_objects.json",
-      "right"};
-  static constexpr std::array<std::string_view, 5> kIclEntries = {"rgb", "depth", "right",
-                                                                  "associations.txt", "tum"};
+      "right",     "masks_right"};
+  static constexpr std::array<std::string_view, 6> kIclEntries = {
+      "rgb", "depth", "right", "masks_right", "associations.txt", "tum"};
   return form == DatasetForm::kTum
              ? Contains(kTumEntries, entry)
              : Contains(kIclEntries, entry) || entry == std::string(name) + ".gt.freiburg";

@@ -74,9 +74,11 @@ Scene SceneOfRight(const SequencePlan& plan) {
 }
 
 void WriteRight(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
-  WriteNewFile(
-      folder / "right" / (plan.layout.Stem(frame) + ".png"),
-      EncodePng(eye.sensor.Colour(RenderBlurred(plan, eye, frame), static_cast<uint32_t>(frame))));
+  const RenderedFrame rendered = RenderBlurred(plan, eye, frame);
+  const std::string stem = plan.layout.Stem(frame);
+  WriteNewFile(folder / "right" / (stem + ".png"),
+               EncodePng(eye.sensor.Colour(rendered, static_cast<uint32_t>(frame))));
+  WriteNewFile(folder / "masks_right" / (stem + ".txt"), MaskText(plan.scene, rendered.instance));
 }
 
 void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
@@ -146,6 +148,7 @@ bool RenderSequence(const fs::path& folder, const SequencePlan& plan, int thread
   const Sensor right_sensor(plan.sensor, HashSeed(plan.sensor_seed, 0, "right"));
   if (is_stereo) {
     fs::create_directory(folder / "right");
+    fs::create_directory(folder / "masks_right");
     right_renderer.emplace(right_scene, plan.camera, plan.readout_time);
   }
   const int workers =

@@ -21,7 +21,7 @@ struct AteOptions {
 
 // Absolute trajectory error (Sturm et al. 2012): the distances between the translations of paired
 // poses, after the estimate was aligned to the reference.
-struct AteReport {
+struct AteResult {
   std::string failure;     // the reason if there is no error (too few pairs), else empty
   ErrorStatistics errors;  // m
   PointAlignment reference_from_estimate;
@@ -42,13 +42,13 @@ struct AteReport {
 
 // Fails if fewer than a tenth of the estimated poses are paired: the few pairs of stamps that hit
 // each other by chance say nothing of the trajectory.
-AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
+AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options = {});
 
 // Describes pairs that are fewer than the stamps allow: less than nine tenths of the estimated
 // poses during the reference. Then the stamps of one side have a wrong rate, or the reference has
 // gaps. Empty if there are enough.
-std::string DescribeMissingPairs(const AteReport& report);
+std::string DescribeMissingPairs(const AteResult& report);
 
 const char* ToString(AlignmentKind kind);
 

@@ -25,7 +25,7 @@ struct RpeOptions {
 // and estimate P, over paired poses i and j that are `delta` apart. Each i is used (--fixed_delta
 // in the TUM tools). For a delta in seconds, j is the pair nearest to t_i + delta; i is left out if
 // no pair is within a tenth of delta.
-struct RpeReport {
+struct RpeResult {
   std::string failure;          // the reason if there is no error, else empty
   ErrorStatistics translation;  // m
   ErrorStatistics rotation;     // degrees
@@ -34,13 +34,13 @@ struct RpeReport {
   bool ok() const { return failure.empty(); }
 };
 
-RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
+RpeResult EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
                       const RpeOptions& options = {});
 
 // Says that the file of the reference has qw before qx qy qz: the rotations then agree with the
 // estimate at least five times as well as in the order of TUM (qx qy qz qw). Empty if they do not,
 // or if they agree within one degree as they are. `report` is that of the same trajectories.
 std::string DescribeSwappedRotations(const Trajectory& reference, const Trajectory& estimate,
-                                     const RpeReport& report, const RpeOptions& options = {});
+                                     const RpeResult& report, const RpeOptions& options = {});
 
 }  // namespace hullslam

@@ -18,7 +18,7 @@ struct FeatureOptions {
   int initial_fast_threshold = 20;  // grey levels
   int minimum_fast_threshold = 7;   // for cells that have no corner at the initial threshold
 
-  bool subpixel = false;  // refine positions to a fraction of a pixel
+  bool subpixel = true;  // refine positions to a fraction of a pixel
   // Keep corners on straight edges, whose positions along the edge are uncertain. Frames with depth
   // always keep them (FrameBuilder): depth holds their landmarks, and they hold poses across the
   // edge.

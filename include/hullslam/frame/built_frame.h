@@ -23,8 +23,9 @@ enum class DetectionRejection {
   kFewKeypoints,  // too few keypoints are in the mask
   kDuplicate,     // another mask with a higher score shows the same object
   kNoSilhouette,  // all lines of the mask are one-sided
+  kNotInLeft,     // no detection of the left image belongs to a mask of the right image
 };
-inline constexpr int kDetectionRejectionCount = 7;
+inline constexpr int kDetectionRejectionCount = 8;
 
 // The name in summary.json, such as "low_score".
 std::string ToString(DetectionRejection reason);
@@ -34,6 +35,7 @@ struct DetectionCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;
   std::map<DetectionRejection, size_t> rejections;  // masks that gave no detection, by the reason
+  size_t right_masks = 0;  // detections that have lines of a mask of the right image, too
 
   void Add(const DetectionCounts& other);
 };

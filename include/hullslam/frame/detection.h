@@ -25,10 +25,13 @@ struct Detection {
   // The primitive that the residuals are computed from; equal to DetectionOptions::primitive.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
-  std::optional<Ellipse> ellipse;     // least-squares fit of the contour for ellipse masks and
+  // Those of the same object in the right image of a stereo camera, px of that image; empty if its
+  // mask is not known. Only residuals of lines use them.
+  std::vector<SilhouetteLine> right_lines;
+  std::optional<Ellipse> ellipse;  // least-squares fit of the contour for ellipse masks and
                                    // `conic`; the ellipse in the box for `box_ellipse`; else absent
-  bool is_cut = false;  // the border of the image cuts the mask
-  bool is_box = false;  // the mask is only a bounding box
+  bool is_cut = false;             // the border of the image cuts the mask
+  bool is_box = false;             // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.
   PackedPoints<3> points;
   std::vector<float> embedding;     // that of the mask (instance_mask.h); empty if there is none

@@ -19,6 +19,8 @@ struct ImageInput {
   // The right image of a stereo camera, CV_8UC1, rectified: a point lies in the same row of both.
   // Empty for other sensors.
   cv::Mat right = {};
+  // Masks of the objects in the right image; may be empty, also beside other masks.
+  std::vector<InstanceMask> right_masks = {};
 };
 
 }  // namespace hullslam

@@ -29,14 +29,15 @@ class StereoRectifier {
   // The camera of the rectified left image, without distortion. bf is the baseline times fx.
   const PinholeCamera& camera() const { return camera_; }
   // The left camera as read has the same centre as the rectified one but another rotation.
-  const Rigid3& rectified_from_left() const { return rectified_from_left_; }
+  const Rigid3& rectified_from_left() const { return left_.rectified_from_read; }
 
   // The images as read must have the size of the cameras. Those of a pair that is rectified already
   // are returned as they are.
-  cv::Mat RectifyLeft(const cv::Mat& image) const { return Remap(image, left_maps_); }
-  cv::Mat RectifyRight(const cv::Mat& image) const { return Remap(image, right_maps_); }
-  // Moves a mask of the left image as read into the rectified one.
-  void Rectify(InstanceMask& mask) const;
+  cv::Mat RectifyLeft(const cv::Mat& image) const { return Remap(image, left_.maps); }
+  cv::Mat RectifyRight(const cv::Mat& image) const { return Remap(image, right_.maps); }
+  // Moves a mask of the left or of the right image as read into the rectified one.
+  void RectifyLeft(InstanceMask& mask) const { Rectify(left_, mask); }
+  void RectifyRight(InstanceMask& mask) const { Rectify(right_, mask); }
 
  private:
   struct Maps {
@@ -45,13 +46,19 @@ class StereoRectifier {
   };
   static Maps MakeMaps(const PinholeCamera& read, const Eigen::Matrix3d& rotation,
                        const PinholeCamera& rectified);
+  // One camera of the pair.
+  struct Eye {
+    PinholeCamera read;
+    Rigid3 rectified_from_read = {};
+    Maps maps = {};
+  };
   static cv::Mat Remap(const cv::Mat& image, const Maps& maps);
+  void Turn(const Eigen::Matrix3d& rotation, Eye& eye) const;
+  void Rectify(const Eye& eye, InstanceMask& mask) const;
 
-  PinholeCamera read_;  // the left camera
+  Eye left_;
+  Eye right_;
   PinholeCamera camera_;
-  Rigid3 rectified_from_left_;
-  Maps left_maps_;
-  Maps right_maps_;
 };
 
 }  // namespace hullslam

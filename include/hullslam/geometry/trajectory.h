@@ -22,4 +22,7 @@ using Trajectory = std::vector<StampedPose>;
 std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
                                       double max_gap);
 
+// The poses of another camera that is fixed to the camera of the trajectory.
+Trajectory OfOtherCamera(Trajectory trajectory, const Rigid3& cam_from_other);
+
 }  // namespace hullslam

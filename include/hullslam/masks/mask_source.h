@@ -23,6 +23,8 @@ struct MaskFrame {
 
 // The frames of a sequence, in order.
 std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence);
+// The same of the right images, which may have names of their own.
+std::vector<MaskFrame> RightMaskFrames(const ImageSequence& sequence);
 
 // The masks of one frame.
 struct FrameMasks {

@@ -55,7 +55,7 @@ struct ImageSequence {
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
-  // The kind of data set: "tum", "icl", "euroc", "bag", "video" or "vslamlab"; and what was chosen
+  // The kind of data set: "tum", "icl", "euroc", "bag", "video", "kitti", ...; and what was chosen
   // among several possibilities, such as "image_topic". OpenRunSequence() needs both to open the
   // same images again.
   std::string dataset = {};
@@ -67,12 +67,21 @@ struct ImageSequence {
   ColourLoader load_colour = nullptr;
   // Moves a mask of the image as read into the image that `load` gives. Null if they are the same.
   std::function<void(InstanceMask&)> fit_mask = nullptr;
+  // The same for the right image.
+  std::function<void(InstanceMask&)> fit_right_mask = nullptr;
+  // The rotation of the camera of the images that `load` gives, if it turns them; the centre is the
+  // same. The poses that a run writes are those of the camera as read.
+  std::optional<Rigid3> cam_from_read = std::nullopt;
   // The size of the images as read, px, if `load` resizes them; else 0.
   int read_width = 0;
   int read_height = 0;
 };
 
-// The true trajectory, from the field that is set; absent without ground truth. The file may have
+// Poses of the camera of the images that the sequence gives, as those of the camera as read.
+Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);
+
+// The true trajectory of the camera of the images that the sequence gives, from the field that is
+// set, which is that of the camera as read; absent without ground truth. The file may have
 // any of the forms in docs/outputs.md. What was converted or skipped is added to `notes`. Throws
 // InputError for a file that cannot be used.
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,

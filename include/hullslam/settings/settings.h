@@ -49,7 +49,7 @@ struct PresetOverride {
 };
 
 // Messages for the user about the settings.
-struct SettingsReport {
+struct SettingsNotes {
   std::vector<std::string> warnings;             // also one per override by a file or a calibration
   std::vector<PresetOverride> preset_overrides;  // sorted by key
   // What the file was recognised as, if it is no settings file, and any lens other than Brown's.
@@ -62,7 +62,7 @@ struct SettingsReport {
 
 // The same with a preset, whose settings the file and the overrides replace.
 SystemOptions ReadSettings(const std::filesystem::path& file, const SettingsSources& sources,
-                           SettingsReport& report);
+                           SettingsNotes& report);
 
 // A camera as its calibration or its data set describes it.
 struct CameraCalibration {
@@ -78,7 +78,7 @@ SystemOptions MakeSettings(const CameraCalibration& calibration, const std::stri
                            std::vector<std::string>* warnings = nullptr);
 // The same with a preset, whose settings the calibration and the overrides replace.
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
-                           const SettingsSources& sources, SettingsReport& report);
+                           const SettingsSources& sources, SettingsNotes& report);
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in
 // `config_folder` for the camera that the name of the folder contains (freiburg1 or fr1: TUM1.yaml,

@@ -81,14 +81,16 @@ class System {
   // camera, as in ImageInput, or the right image of a stereo camera, which may have colours; a
   // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
   // `masks` are those of the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
-  // makes them from images). Throws InputError for images of another type or size and for masks
+  // makes them from images), `right_masks` those in the right image, which add lines of the same
+  // objects. Throws InputError for images of another type or size and for masks
   // that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
   // refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give the last published state.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& second = {},
-                     std::vector<InstanceMask> masks = {});
+                     std::vector<InstanceMask> masks = {},
+                     std::vector<InstanceMask> right_masks = {});
   TrackedFrame Track(const ImageInput& image);
 
   // The two halves of Track(image). Building needs no map, so one other thread may build the next

@@ -11,7 +11,7 @@ namespace {
 
 using Row = Eigen::Matrix<double, 1, 10>;
 
-constexpr size_t kLeastViews = 3;
+constexpr size_t kLeastObservations = 3;
 
 // The coefficients of pi^T Q pi in the ten different elements of Q, row by row.
 Row CoefficientsOf(const Eigen::Vector4d& plane) {
@@ -36,21 +36,25 @@ Eigen::Matrix4d QuadricOf(const Eigen::Matrix<double, 10, 1>& elements) {
   return quadric;
 }
 
-std::vector<ObjectView> ViewsWithWholeBox(std::span<const ObjectView> views) {
-  std::vector<ObjectView> whole;
-  std::copy_if(views.begin(), views.end(), std::back_inserter(whole),
-               [](const ObjectView& view) { return !view.detection->is_cut; });
-  return whole.size() >= kLeastViews ? whole : std::vector<ObjectView>(views.begin(), views.end());
+std::vector<ResolvedObservation> ObservationsWithWholeBox(
+    std::span<const ResolvedObservation> observations) {
+  std::vector<ResolvedObservation> whole;
+  std::copy_if(
+      observations.begin(), observations.end(), std::back_inserter(whole),
+      [](const ResolvedObservation& observation) { return !observation.detection->is_cut; });
+  return whole.size() >= kLeastObservations
+             ? whole
+             : std::vector<ResolvedObservation>(observations.begin(), observations.end());
 }
 
 // The planes through the camera and the sides of the box, with unit normals, where
 // `local_from_world` is x -> (x - center) / scale.
-void AddPlanes(const PinholeCamera& camera, const ObjectView& view, const Eigen::Vector3d& center,
-               double scale, std::vector<Row>& rows) {
-  const Eigen::AlignedBox2d& box = view.detection->box;
+void AddPlanes(const PinholeCamera& camera, const ResolvedObservation& observation,
+               const Eigen::Vector3d& center, double scale, std::vector<Row>& rows) {
+  const Eigen::AlignedBox2d& box = observation.detection->box;
   Eigen::Matrix<double, 3, 4> projection;
-  projection << view.cam_from_world.rotation.toRotationMatrix() * scale,
-      view.cam_from_world * center;
+  projection << observation.cam_from_world.rotation.toRotationMatrix() * scale,
+      observation.cam_from_world * center;
   projection = camera.Matrix() * projection;
   for (const Eigen::Vector3d& line :
        {Eigen::Vector3d(1.0, 0.0, -box.min().x()), Eigen::Vector3d(1.0, 0.0, -box.max().x()),
@@ -60,10 +64,11 @@ void AddPlanes(const PinholeCamera& camera, const ObjectView& view, const Eigen:
   }
 }
 
-bool IsInFrontOfAll(const Ellipsoid& ellipsoid, std::span<const ObjectView> views) {
-  return std::all_of(views.begin(), views.end(), [&](const ObjectView& view) {
-    return (view.cam_from_world * ellipsoid.world_from_object.translation).z() > 0.0;
-  });
+bool IsInFrontOfAll(const Ellipsoid& ellipsoid, std::span<const ResolvedObservation> observations) {
+  return std::all_of(
+      observations.begin(), observations.end(), [&](const ResolvedObservation& observation) {
+        return (observation.cam_from_world * ellipsoid.world_from_object.translation).z() > 0.0;
+      });
 }
 
 }  // namespace
@@ -88,13 +93,13 @@ std::optional<Ellipsoid> EllipsoidOfDualQuadric(const Eigen::Matrix4d& quadric) 
 }
 
 std::vector<Ellipsoid> StartByBoxPlanes(const StartInput& input) {
-  if (input.views.size() < kLeastViews) {
+  if (input.observations.size() < kLeastObservations) {
     return {};
   }
-  const double scale = MeanDistance(input.views, input.center);
+  const double scale = MeanDistance(input.observations, input.center);
   std::vector<Row> rows;
-  for (const ObjectView& view : ViewsWithWholeBox(input.views)) {
-    AddPlanes(input.camera, view, input.center, scale, rows);
+  for (const ResolvedObservation& observation : ObservationsWithWholeBox(input.observations)) {
+    AddPlanes(input.camera, observation, input.center, scale, rows);
   }
   Eigen::MatrixXd equations(rows.size(), 10);
   for (size_t i = 0; i < rows.size(); ++i) {
@@ -110,8 +115,8 @@ std::vector<Ellipsoid> StartByBoxPlanes(const StartInput& input) {
           .cwiseMax(Eigen::Vector3d::Constant(input.options.min_half_axis * scale));
   Eigen::Vector3d& center = ellipsoid->world_from_object.translation;
   center = input.center + scale * center;
-  return IsInFrontOfAll(*ellipsoid, input.views) ? std::vector<Ellipsoid>{*ellipsoid}
-                                                 : std::vector<Ellipsoid>();
+  return IsInFrontOfAll(*ellipsoid, input.observations) ? std::vector<Ellipsoid>{*ellipsoid}
+                                                        : std::vector<Ellipsoid>();
 }
 
 }  // namespace hullslam

@@ -16,10 +16,10 @@ namespace hullslam {
 std::optional<Ellipsoid> EllipsoidOfDualQuadric(const Eigen::Matrix4d& quadric);
 
 // `box_planes` (Nicholson et al. 2019, section III.E; QISO-SLAM): each side of the bounding boxes
-// is the image of a plane pi that touches the quadric, pi^T Q* pi = 0. With three views or more
-// these are linear equations for the ten numbers of Q*, whose least-squares solution is the
-// singular vector of the least singular value. Views whose box the border of the image cuts are
-// left out if three others remain. The equations are solved about `center` and in units of the
+// is the image of a plane pi that touches the quadric, pi^T Q* pi = 0. With three observations or
+// more these are linear equations for the ten numbers of Q*, whose least-squares solution is the
+// singular vector of the least singular value. Observations whose box the border of the image cuts
+// are left out if three others remain. The equations are solved about `center` and in units of the
 // distance, which does not change their exact solution. Empty if the ellipsoid is not in front of
 // all cameras.
 std::vector<Ellipsoid> StartByBoxPlanes(const StartInput& input);

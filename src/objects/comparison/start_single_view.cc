@@ -30,15 +30,15 @@ Eigen::Matrix3d AxesFacing(const Eigen::Vector3d& center) {
   return axes;
 }
 
-Ellipsoid EllipsoidOf(const ObjectView& view, const PinholeCamera& camera) {
-  const std::vector<double> depths = SortedDepths(*view.detection);
+Ellipsoid EllipsoidOf(const ResolvedObservation& observation, const PinholeCamera& camera) {
+  const std::vector<double> depths = SortedDepths(*observation.detection);
   const auto last = static_cast<double>(depths.size() - 1);
   const double depth = depths[depths.size() / 2];
   const double thickness = depths[static_cast<size_t>((1.0 - kTrimmed) * last)] -
                            depths[static_cast<size_t>(kTrimmed * last)];
-  const Eigen::AlignedBox2d& box = view.detection->box;
+  const Eigen::AlignedBox2d& box = observation.detection->box;
   const Eigen::Vector3d center = camera.Unproject(box.center(), depth);
-  const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+  const Rigid3 world_from_cam = Inverse(observation.cam_from_world);
   Ellipsoid ellipsoid;
   ellipsoid.world_from_object =
       world_from_cam * Rigid3(Eigen::Quaterniond(AxesFacing(center)).normalized(), center);
@@ -52,13 +52,14 @@ Ellipsoid EllipsoidOf(const ObjectView& view, const PinholeCamera& camera) {
 }  // namespace
 
 std::vector<Ellipsoid> StartBySingleView(const StartInput& input) {
-  const auto view = std::find_if(input.views.begin(), input.views.end(), [](const ObjectView& one) {
-    return one.detection->points.size() >= kMinDepthPoints;
-  });
-  if (view == input.views.end()) {
+  const auto observation = std::find_if(input.observations.begin(), input.observations.end(),
+                                        [](const ResolvedObservation& one) {
+                                          return one.detection->points.size() >= kMinDepthPoints;
+                                        });
+  if (observation == input.observations.end()) {
     return StartByRays(input);
   }
-  return {EllipsoidOf(*view, input.camera)};
+  return {EllipsoidOf(*observation, input.camera)};
 }
 
 }  // namespace hullslam

@@ -22,6 +22,22 @@
 namespace hullslam {
 namespace {
 
+// Throws InputError that begins with `path` for pairs that cannot be used: swapped, twice the same
+// image, not rectified. Some pairs of the sequence are looked at.
+void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence,
+                const PinholeCamera& camera) {
+  constexpr size_t kPairs = 3;
+  PairCheck check;
+  for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
+    const ImageInput pair =
+        sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
+    check.Add(pair.grey, pair.right);
+  }
+  if (const auto fault = check.FindFault()) {
+    throw InputError(path.string() + ": " + *fault);
+  }
+}
+
 std::string DescribeCamera(const PinholeCamera& camera) {
   return fmt::format("stereo: baseline {:.4f} m, focal length {:.1f} px in the rectified images",
                      camera.bf / camera.fx, camera.fx);
@@ -169,27 +185,13 @@ class StereoBag final : public Dataset {
 
 }  // namespace
 
-void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence,
-                const PinholeCamera& camera) {
-  constexpr size_t kPairs = 3;
-  PairCheck check;
-  for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
-    const ImageInput pair =
-        sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
-    check.Add(pair.grey, pair.right);
-  }
-  if (const auto fault = check.FindFault()) {
-    throw InputError(path.string() + ": " + *fault);
-  }
-}
-
 std::unique_ptr<Dataset> MakeStereoBagDataset() { return std::make_unique<StereoBag>(); }
 
 std::unique_ptr<Dataset> MakeEurocStereoDataset() {
   return std::make_unique<CalibratedPairs>(
       DatasetHelp{.sequence = "folder with mav0, in the format ASL, with cam0 and cam1",
                   .settings = "default: the cameras of the two sensor.yaml in SEQUENCE",
-                  .groundtruth = "of the rectified left camera; default: "
+                  .groundtruth = "of the left camera; default: "
                                  "state_groundtruth_estimate0 or groundtruth.txt in SEQUENCE"},
       "cam0/sensor.yaml and cam1/sensor.yaml", OpenEurocPairs);
 }

@@ -15,9 +15,4 @@ std::unique_ptr<Dataset> MakeKittiDataset();
 std::unique_ptr<Dataset> MakeStereoFolderDataset();
 std::unique_ptr<Dataset> MakeStereoBagDataset();
 
-// Throws InputError that begins with `path` for pairs that cannot be used: swapped, twice the same
-// image, not rectified. Some pairs of the sequence are looked at.
-void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence,
-                const PinholeCamera& camera);
-
 }  // namespace hullslam

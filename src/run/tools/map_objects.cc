@@ -16,7 +16,7 @@
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/known_pose_mapper.h"
 #include "hullslam/util/error.h"
-#include "objects/object_view.h"
+#include "objects/resolved_observation.h"
 #include "results/object_file.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
@@ -26,16 +26,16 @@
 #include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
+#include "run/print_results.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/report_output.h"
-#include "run/run_report.h"
 #include "run/summarize_run.h"
 #include "run/tools/commands.h"
 #include "scene/make_scene.h"
 #include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
-#include "system/view_chooser.h"
+#include "system/frame_chooser.h"
 
 namespace hullslam {
 namespace {
@@ -54,7 +54,7 @@ struct MapObjectsArguments {
   std::vector<std::string> overrides;
   std::filesystem::path output =
       "out_objects";  // not the default of rgbd_tum, whose folder may contain the poses to be used
-  ViewChoice choice;
+  FrameChoice choice;
   bool overwrite = false;
   bool without_depth = false;
   bool report = false;
@@ -93,21 +93,21 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
 }
 
 // A frame that is used for mapping.
-struct ChosenView {
+struct ChosenFrame {
   size_t frame = 0;  // index in the sequence
   Rigid3 world_from_cam;
 };
 
 struct ChosenViews {
-  std::vector<ChosenView> views;
+  std::vector<ChosenFrame> views;
   size_t without_pose = 0;  // frames
 };
 
-// Chooses the frames to use (ViewChooser). Throws InputError if no frame has a pose.
+// Chooses the frames to use (FrameChooser). Throws InputError if no frame has a pose.
 ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<FramePaths>& frames,
                         const Trajectory& poses, const SequenceMasks& masks) {
   ChosenViews chosen;
-  ViewChooser chooser(arguments.choice);
+  FrameChooser chooser(arguments.choice);
   for (size_t i = 0; i < frames.size(); ++i) {
     const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxGapOfPoses);
     if (!pose) {
@@ -125,19 +125,19 @@ ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<
   return chosen;
 }
 
-void PrintTable(const KnownPoseMapper& run, const ObjectReport& report) {
+void PrintTable(const KnownPoseMapper& run, const ObjectResults& report) {
   Print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views", "parallax",
         "half axes (m)", "SIoU", "mask", "misfit");
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     if (object.state != ObjectState::kMapped) {
       continue;
     }
     const ObjectLandmark& landmark = run.map().objects().At(object.id);
-    const double parallax =
-        Parallax(CollectViews(run.map(), landmark), object.ellipsoid.world_from_object.translation);
+    const double parallax = Parallax(ResolveObservations(run.map(), landmark),
+                                     object.ellipsoid.world_from_object.translation);
     const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
     Print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
-          object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(),
+          object.id.value, object.label, object.observations.size(), parallax, axes.x(), axes.y(),
           axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
           object.misfit_px);
   }
@@ -180,11 +180,11 @@ void PrintInputs(const MappingInputs& inputs, const SequenceMasks& masks) {
 
 // Adds all views to the mapper. Returns false if a signal ended it early.
 bool MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
-            const std::vector<FramePaths>& frames, const std::vector<ChosenView>& views,
+            const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
             const SequenceMasks& masks, KnownPoseMapper& run) {
   Progress progress(frames.size(), arguments.quiet);
   bool is_depth_checked = false;
-  for (const ChosenView& view : views) {
+  for (const ChosenFrame& view : views) {
     if (IsInterrupted()) {
       progress.Clear();
       return false;
@@ -224,7 +224,7 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   return summary;
 }
 
-void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const ObjectReport& report,
+void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const ObjectResults& report,
                   const Scene& scene, RunSummary summary) {
   for (const FileContent& file : ObjectFiles(report, scene)) {
     output.Write(file);
@@ -278,7 +278,7 @@ int RunMapObjects(int argc, char** argv) {
   const bool is_complete = MapAll(arguments, options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
-  const ObjectReport report = MeasuredObjects(run.map(), camera, arguments.sequence);
+  const ObjectResults report = MeasuredObjects(run.map(), camera, arguments.sequence);
   RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
   ObjectCounts counts = run.counts();
   counts.frames_without_masks = masks.without_masks();

@@ -16,7 +16,7 @@
 #include "results/json_text.h"
 #include "results/object_file.h"
 #include "run/messages.h"
-#include "run/run_report.h"
+#include "run/print_results.h"
 #include "run/tools/objects_truth.h"
 
 namespace hullslam {
@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ToJson(const ReportedObject& object) {
+Json ToJson(const ObjectResult& object) {
   return {{"id", object.id.value},
           {"class", object.label},
           {"state", ToString(object.state)},
@@ -37,10 +37,10 @@ Json ToJson(const ReportedObject& object) {
           {"misfit_px", object.misfit_px}};
 }
 
-void PrintJson(const ObjectReport& report, const std::optional<TruthEvaluation>& truth) {
+void PrintJson(const ObjectResults& report, const std::optional<TruthEvaluation>& truth) {
   const MapFit fit = SummarizeFits(report);
   Json each = Json::array();
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     each.push_back(ToJson(object));
   }
   const Json json = {{"count", fit.objects},
@@ -56,7 +56,7 @@ void PrintJson(const ObjectReport& report, const std::optional<TruthEvaluation>&
   Print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void PrintObject(const ReportedObject& object) {
+void PrintObject(const ObjectResult& object) {
   const ObjectFit& fit = object.fit;
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
   Print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
@@ -67,12 +67,12 @@ void PrintObject(const ReportedObject& object) {
 
 // Prints the objects. Lengths are in metres or, if the alignment has a scale, in "u", the unit of
 // length of the map.
-void PrintText(const ObjectReport& report, AlignmentKind alignment) {
+void PrintText(const ObjectResults& report, AlignmentKind alignment) {
   const std::string unit = alignment == AlignmentKind::kSim3 ? "u" : "m";
   Print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
         "state", "views", "lines", "SIoU", "mask", "MTD " + unit + "2", "tang. px", "misfit",
         "half axes " + unit);
-  for (const ReportedObject& object : report.objects) {
+  for (const ObjectResult& object : report.objects) {
     PrintObject(object);
   }
   const MapFit fit = SummarizeFits(report);
@@ -132,7 +132,7 @@ CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
 
 void RunObjectsCommand(const ObjectsArguments& arguments) {
   CheckHasObjects(arguments.run);
-  ObjectReport report = ReadObjects(arguments.run / "objects.json");
+  ObjectResults report = ReadObjects(arguments.run / "objects.json");
   MeasureObjects(report);
   const AlignmentKind alignment =
       arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);

@@ -13,7 +13,7 @@
 #include "hullslam/util/error.h"
 #include "results/true_object_file.h"
 #include "run/messages.h"
-#include "run/run_report.h"
+#include "run/print_results.h"
 
 namespace hullslam {
 namespace {
@@ -128,12 +128,12 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
 
 }  // namespace
 
-TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
+TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const ObjectResults& report,
                                      AlignmentKind alignment) {
   const std::filesystem::path folder = arguments.groundtruth.parent_path();
   const Trajectory groundtruth = ReadTrajectory(folder / "groundtruth.txt");
   const Trajectory run = ReadTrajectory(arguments.run / "trajectory.txt");
-  const AteReport ate = EvaluateAte(groundtruth, run, {.alignment = alignment});
+  const AteResult ate = EvaluateAte(groundtruth, run, {.alignment = alignment});
   if (!ate.ok()) {
     throw InputError((arguments.run / "trajectory.txt").string() + ": " + ate.failure);
   }

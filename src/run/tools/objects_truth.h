@@ -11,7 +11,7 @@ namespace hullslam {
 // Reads groundtruth_objects.json, and from the same folder groundtruth.txt and the masks. Throws
 // InputError for bad files, and if no pose of the run has a true pose at its time. `alignment` is
 // kSe3, or kSim3 if the unit of length of the run is not the metre.
-TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
+TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const ObjectResults& report,
                                      AlignmentKind alignment);
 
 void PrintTruth(const TruthEvaluation& evaluation);

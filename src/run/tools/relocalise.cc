@@ -131,7 +131,7 @@ SystemOptions ReadQuietly(const std::filesystem::path& file, const std::string& 
                           const std::vector<std::string>& overrides) {
   const std::optional<Preset> read =
       preset.empty() ? std::nullopt : std::optional(ReadPreset(preset));
-  SettingsReport unused;
+  SettingsNotes unused;
   return ReadSettings(file, {.preset = read ? &*read : nullptr, .overrides = overrides}, unused);
 }
 
@@ -241,7 +241,7 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
     PrintFailure("the program was interrupted");
     return std::nullopt;
   }
-  const AteReport ate = EvaluateAte(inputs.groundtruth, system.trajectory());
+  const AteResult ate = EvaluateAte(inputs.groundtruth, system.trajectory());
   if (!ate.ok()) {
     PrintFailure("the map cannot be compared with the ground truth: " + ate.failure);
     return std::nullopt;
@@ -316,7 +316,7 @@ void PrintLine(const std::string& name, const std::vector<QueryResult>& some, si
         percent(far), wrong, duration);
 }
 
-void PrintReport(const std::vector<QueryResult>& results) {
+void PrintResults(const std::vector<QueryResult>& results) {
   const auto select = [&](const auto& is_wanted) {
     std::vector<QueryResult> some;
     std::copy_if(results.begin(), results.end(), std::back_inserter(some), is_wanted);
@@ -370,7 +370,7 @@ int RunRelocalise(int argc, char** argv) {
     progress.Show(results.size());
   }
   progress.Clear();
-  PrintReport(results);
+  PrintResults(results);
   return kDone;
 }
 

@@ -21,8 +21,8 @@ namespace hullslam {
 namespace {
 
 struct Evaluation {
-  AteReport ate;
-  RpeReport rpe;
+  AteResult ate;
+  RpeResult rpe;
   double max_difference = 0.0;  // s
 };
 
@@ -80,7 +80,7 @@ nlohmann::ordered_json ToJson(const ErrorStatistics& errors) {
       {"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median}, {"max", errors.max}};
 }
 
-nlohmann::ordered_json ToJson(const RpeReport& rpe) {
+nlohmann::ordered_json ToJson(const RpeResult& rpe) {
   if (!rpe.ok()) {
     return nullptr;
   }
@@ -91,7 +91,7 @@ nlohmann::ordered_json ToJson(const RpeReport& rpe) {
 }
 
 void PrintJson(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
-  const AteReport& ate = evaluation.ate;
+  const AteResult& ate = evaluation.ate;
   const nlohmann::ordered_json json = {
       {"ate_m", ToJson(ate.errors)},
       {"alignment", ToString(arguments.ate.alignment)},
@@ -115,7 +115,7 @@ void PrintErrors(const char* name, const ErrorStatistics& errors, const char* un
 }
 
 void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
-  const AteReport& ate = evaluation.ate;
+  const AteResult& ate = evaluation.ate;
   PrintErrors("ATE", ate.errors, "m");
   if (evaluation.rpe.ok()) {
     PrintErrors("RPE 1 s", evaluation.rpe.translation, "m");

@@ -3,21 +3,22 @@
 // surfaces and covariances.
 #include "scene/relations.h"
 
-#include "scene/joint_views.h"
+#include "scene/joint_observations.h"
 #include "scene/shape_covariance.h"
 
 namespace hullslam {
 
-ViewStatistics CollectViewStatistics(const Map&, const PinholeCamera&) { return {}; }
+ObservationStatistics CollectObservationStatistics(const Map&, const PinholeCamera&) { return {}; }
 
-std::vector<Relation> FindViewRelations(const ViewStatistics&) { return {}; }
+std::vector<Relation> FindObservedRelations(const ObservationStatistics&) { return {}; }
 
-SceneRelations FindStandingRelations(std::span<const ObjectBody>, const ViewStatistics&) {
+SceneRelations FindStandingRelations(std::span<const ObjectBody>, const ObservationStatistics&) {
   return {};
 }
 
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera&, const Ellipsoid&,
-                                            const Ellipsoid&, std::span<const ObjectView>) {
+                                            const Ellipsoid&,
+                                            std::span<const ResolvedObservation>) {
   return std::nullopt;
 }
 

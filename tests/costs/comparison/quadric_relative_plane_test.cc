@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "costs/object_cost_laws.h"
+#include "costs/comparison/plane_cost_laws.h"
 
 namespace hullslam {
 namespace {
@@ -39,46 +39,7 @@ TEST(RelativePlaneCost, IsTheAlgebraicResidualOverTheSquaredDepth) {
   }
 }
 
-TEST(RelativePlaneCost, IsZeroForEveryTangent) {
-  RandomGeometry random(2);
-  for (int i = 0; i < 20; ++i) {
-    const SeenEllipsoid state = RandomSeenEllipsoid(random);
-    const RelativePlaneCost cost(kObjectCamera, TangentsOf(state, 16), 1.0);
-    EXPECT_LT(ObjectResidualsOf(cost, state).norm(), 1e-9);
-  }
-}
-
-TEST(RelativePlaneCost, KeepsTheLaws) {
-  RandomGeometry random(3);
-  for (int i = 0; i < 20; ++i) {
-    const SeenEllipsoid state = RandomSeenEllipsoid(random);
-    const RelativePlaneCost cost(kObjectCamera, TangentsOf(RandomSeenEllipsoid(random), 12), 0.3);
-    ExpectObjectCostLaws(cost, state, random);
-  }
-}
-
-TEST(RelativePlaneCost, OneSidedIsZeroWhereTheObjectReachesThePlane) {
-  RandomGeometry random(4);
-  for (int i = 0; i < 10; ++i) {
-    const SeenEllipsoid state = RandomSeenEllipsoid(random);
-    for (const double outwards : {-500.0, -3.0, 3.0}) {
-      std::vector<SilhouetteLine> lines = TangentsOf(state, 16);
-      for (SilhouetteLine& line : lines) {
-        line.is_one_sided = true;
-        line.line.offset -= outwards;
-      }
-      const RelativePlaneCost cost(kObjectCamera, lines, 1.0);
-      const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
-      EXPECT_EQ(residuals.isZero(0.0), outwards < 0.0) << outwards;
-      EXPECT_TRUE((residuals.array() <= 0.0).all());
-      ExpectTrueObjectGradient(cost, state);
-    }
-  }
-}
-
-TEST(RelativePlaneCost, IsNotDefinedUnlessInFront) {
-  ExpectUndefinedUnlessInFront(RelativePlaneCost(kObjectCamera, TangentsOf(SphereAhead(), 8), 1.0));
-}
+TEST(RelativePlaneCost, KeepsTheLaws) { ExpectPlaneCostLaws<RelativePlaneCost>(); }
 
 TEST(RelativePlaneCost, HasItsRowInTheTable) {
   ExpectKind(ObjectResidual::kRelativePlane, "relative_plane", true,

@@ -47,10 +47,10 @@ TEST(EllipsoidOfDualQuadric, AQuadricAtInfinityIsNoEllipsoid) {
 TEST(StartByBoxPlanes, FindsAnEllipsoidOfExactBoxes) {
   const MadeObject object = MakeObject("cup", {0.1, -0.05, 0.1}, {0.1, 0.15, 0.25}, 0.4);
   const SeenByRing seen(object, 12, 0.45);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> observations = seen.Observations();
   const StartOptions options;
   const std::vector<Ellipsoid> starts = StartByBoxPlanes({.camera = seen.camera(),
-                                                          .views = views,
+                                                          .observations = observations,
                                                           .center = {0.0, 0.0, 0.0},
                                                           .has_depth = true,
                                                           .options = options});
@@ -65,34 +65,35 @@ TEST(StartByBoxPlanes, FindsAnEllipsoidOfExactBoxes) {
 
 TEST(StartByBoxPlanes, NeedsThreeViews) {
   const SeenByRing seen(MakeObject("cup", {0.0, 0.0, 0.0}, {0.1, 0.15, 0.25}), 2, 0.5);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> observations = seen.Observations();
   const StartOptions options;
-  EXPECT_TRUE(
-      StartByBoxPlanes(
-          {.camera = seen.camera(), .views = views, .center = {0.0, 0.0, 0.0}, .options = options})
-          .empty());
+  EXPECT_TRUE(StartByBoxPlanes({.camera = seen.camera(),
+                                .observations = observations,
+                                .center = {0.0, 0.0, 0.0},
+                                .options = options})
+                  .empty());
 }
 
-// The border of the image cuts off half of the box in some views.
+// The border of the image cuts off half of the box in some observations.
 TEST(StartByBoxPlanes, LeavesOutCutBoxesIfThreeOthersRemain) {
   const MadeObject object = MakeObject("cup", {0.1, -0.05, 0.1}, {0.1, 0.15, 0.25}, 0.4);
   const SeenByRing seen(object, 12, 0.45);
   const StartOptions options;
   const auto largest_error = [&](size_t cut) {
-    std::vector<ObjectView> views = seen.Views();
+    std::vector<ResolvedObservation> observations = seen.Observations();
     std::vector<Detection> detections;
-    for (const ObjectView& view : views) {
-      detections.push_back(*view.detection);
+    for (const ResolvedObservation& observation : observations) {
+      detections.push_back(*observation.detection);
     }
-    for (size_t i = 0; i < views.size(); ++i) {
+    for (size_t i = 0; i < observations.size(); ++i) {
       if (i < cut) {
         detections[i].is_cut = true;
         detections[i].box.max().x() = detections[i].box.center().x();
       }
-      views[i].detection = &detections[i];
+      observations[i].detection = &detections[i];
     }
     const std::vector<Ellipsoid> starts = StartByBoxPlanes({.camera = seen.camera(),
-                                                            .views = views,
+                                                            .observations = observations,
                                                             .center = {0.0, 0.0, 0.0},
                                                             .has_depth = true,
                                                             .options = options});

@@ -12,10 +12,10 @@ const MadeObject kBottle = MakeObject("bottle", {0.1, 0.0, 0.1}, {0.08, 0.12, 0.
 
 TEST(StartByOrientedBox, IsInTheBoxOfTheDepthPoints) {
   const SeenByRing seen(kBottle, 8, 0.8);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> observations = seen.Observations();
   const StartOptions options{.trimmed = 0.0, .inflation = 1.0};
   const std::vector<Ellipsoid> starts = StartByOrientedBox({.camera = seen.camera(),
-                                                            .views = views,
+                                                            .observations = observations,
                                                             .center = {0.1, 0.0, 0.1},
                                                             .has_depth = true,
                                                             .options = options});
@@ -30,25 +30,28 @@ TEST(StartByOrientedBox, IsInTheBoxOfTheDepthPoints) {
 
 TEST(StartByOrientedBox, WithoutDepthTakesLandmarks) {
   const SeenByRing seen(kBottle, 4, 0.8);
-  std::vector<ObjectView> views = seen.Views();
+  std::vector<ResolvedObservation> observations = seen.Observations();
   std::vector<Detection> detections;
-  for (const ObjectView& view : views) {
-    detections.push_back(*view.detection);
+  for (const ResolvedObservation& observation : observations) {
+    detections.push_back(*observation.detection);
     detections.back().points.clear();
   }
-  for (size_t i = 0; i < views.size(); ++i) {
-    views[i].landmarks = views[i].detection->points.Unpack();
-    views[i].detection = &detections[i];
+  for (size_t i = 0; i < observations.size(); ++i) {
+    observations[i].landmarks = observations[i].detection->points.Unpack();
+    observations[i].detection = &detections[i];
   }
   const StartOptions options{.trimmed = 0.0, .inflation = 1.0};
-  const StartInput input{
-      .camera = seen.camera(), .views = views, .center = {0.1, 0.0, 0.1}, .options = options};
+  const StartInput input{.camera = seen.camera(),
+                         .observations = observations,
+                         .center = {0.1, 0.0, 0.1},
+                         .options = options};
   ASSERT_EQ(StartByOrientedBox(input).size(), 1u);
   EXPECT_NEAR(StartByOrientedBox(input)[0].half_axes.maxCoeff(), 0.2, 0.03);
-  // Two landmarks that all views show are two, not eight.
+  // Two landmarks that all observations show are two, not eight.
   const std::vector<Eigen::Vector3d> two = {{0.1, 0.0, 0.1}, {0.2, 0.05, 0.15}};
-  for (ObjectView& view : views) {
-    view.landmarks = {view.cam_from_world * two[0], view.cam_from_world * two[1]};
+  for (ResolvedObservation& observation : observations) {
+    observation.landmarks = {observation.cam_from_world * two[0],
+                             observation.cam_from_world * two[1]};
   }
   EXPECT_TRUE(StartByOrientedBox(input).empty());
 }

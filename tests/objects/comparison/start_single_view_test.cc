@@ -8,10 +8,10 @@
 namespace hullslam {
 namespace {
 
-StartInput InputOf(const SeenByRing& seen, std::span<const ObjectView> views,
+StartInput InputOf(const SeenByRing& seen, std::span<const ResolvedObservation> views,
                    const StartOptions& options) {
   return {.camera = seen.camera(),
-          .views = views,
+          .observations = views,
           .center = {0.0, 0.0, 0.0},
           .has_depth = true,
           .options = options};
@@ -19,7 +19,7 @@ StartInput InputOf(const SeenByRing& seen, std::span<const ObjectView> views,
 
 TEST(StartBySingleView, FacesTheCameraWithTheSizeOfTheBox) {
   const SeenByRing seen(MakeObject("ball", {0.0, 0.0, 0.0}, {0.15, 0.15, 0.15}), 1, 0.3);
-  const std::vector<ObjectView> views = seen.Views();
+  const std::vector<ResolvedObservation> views = seen.Observations();
   const StartOptions options;
   const std::vector<Ellipsoid> starts = StartBySingleView(InputOf(seen, views, options));
   ASSERT_EQ(starts.size(), 1u);
@@ -39,18 +39,18 @@ TEST(StartBySingleView, FacesTheCameraWithTheSizeOfTheBox) {
 TEST(StartBySingleView, TheThicknessIsBounded) {
   const StartOptions options;
   const SeenByRing thick(MakeObject("ball", {0.0, 0.0, 0.0}, {0.6, 0.6, 0.6}), 1, 0.3);
-  const std::vector<ObjectView> of_thick = thick.Views();
+  const std::vector<ResolvedObservation> of_thick = thick.Observations();
   EXPECT_EQ(StartBySingleView(InputOf(thick, of_thick, options)).at(0).half_axes.z(), 0.1);
   const SeenByRing thin(MakeObject("ball", {0.0, 0.0, 0.0}, {0.02, 0.02, 0.02}), 1, 0.3);
-  const std::vector<ObjectView> of_thin = thin.Views();
+  const std::vector<ResolvedObservation> of_thin = thin.Observations();
   EXPECT_EQ(StartBySingleView(InputOf(thin, of_thin, options)).at(0).half_axes.z(), 0.025);
 }
 
 TEST(StartBySingleView, WithoutDepthTheRaysDecide) {
   const SeenByRing seen(MakeObject("ball", {0.0, 0.0, 0.0}, {0.15, 0.15, 0.15}), 4, 0.5);
-  std::vector<ObjectView> views = seen.Views();
+  std::vector<ResolvedObservation> views = seen.Observations();
   std::vector<Detection> detections;
-  for (const ObjectView& view : views) {
+  for (const ResolvedObservation& view : views) {
     detections.push_back(*view.detection);
     detections.back().points.clear();
   }
@@ -67,7 +67,7 @@ TEST(StartBySingleView, WithoutDepthTheRaysDecide) {
 // Depths of 1 m to 1.1 m in steps of 1 mm; those of 1.005 m to 1.095 m count.
 TEST(StartBySingleView, TheThicknessIsThatOfNineTenthsOfTheDepths) {
   const SeenByRing seen(MakeObject("ball", {0.0, 0.0, 0.0}, {0.15, 0.15, 0.15}), 1, 0.3);
-  std::vector<ObjectView> views = seen.Views();
+  std::vector<ResolvedObservation> views = seen.Observations();
   Detection detection = *views[0].detection;
   std::vector<Eigen::Vector3d> points;
   for (int i = 100; i >= 0; --i) {

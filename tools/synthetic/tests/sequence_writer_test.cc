@@ -99,7 +99,7 @@ TEST_F(SequenceWriterTest, AFisheyeHasItsFieldOfViewAndItsSettings) {
   EXPECT_NEAR(camera.Undistort({camera.cx + 320.0, camera.cy}).x() - camera.cx,
               camera.fx * std::tan(75.0 * std::numbers::pi / 180.0), 1e-6);
   const fs::path folder = Write("out", {.frames = 1, .fisheye = 150.0});
-  SettingsReport report;
+  SettingsNotes report;
   const SystemOptions options = ReadSettings(folder / "camera.yaml", {}, report);
   EXPECT_TRUE(options.camera.IsFisheye());
   EXPECT_NEAR(options.camera.fx, camera.fx, 1e-6);

@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Runs RGB-D SLAM as a baseline of VSLAM-LAB.
-#include "run/vslamlab_program.h"
-
-int main(int argc, char** argv) {
-  return hullslam::RunVslamlabProgram(hullslam::SensorKind::kRgbd, argc, argv);
-}

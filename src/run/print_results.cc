@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/print_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "hullslam/map/initialisation_failure.h"
+#include "run/messages.h"
+#include "run/summarize_run.h"
+#include "util/counted.h"
+
+namespace hullslam {
+namespace {
+
+// A text such as "40 x too little parallax, 3 x too few matches", the most frequent reason first,
+// with advice for the user.
+std::string DescribeFailures(const InitialisationSummary& initialisation) {
+  std::vector<std::pair<size_t, std::string>> reasons;
+  for (const auto& [reason, count] : initialisation.failures) {
+    reasons.emplace_back(count, fmt::format("{} x {}", count, reason));
+  }
+  std::sort(reasons.rbegin(), reasons.rend());
+  std::string text;
+  for (const auto& [count, reason] : reasons) {
+    text += (text.empty() ? "" : ", ") + reason;
+  }
+  const bool lacks_parallax =
+      !reasons.empty() &&
+      reasons.front().second.ends_with(ToString(InitialisationFailure::kTooLittleParallax));
+  return text + (lacks_parallax ? "; the camera must move sideways" : "");
+}
+
+// Of a camera that was lost and went on elsewhere; nothing if the map is in one piece.
+void PrintIslands(const IslandsSummary& islands, bool are_kept) {
+  if (islands.begun < 2) {
+    return;
+  }
+  const size_t left = islands.begun - islands.joined - 1;
+  Print("the map was begun {} times; {} of its parts were joined, {} {}\n", islands.begun,
+        islands.joined, left, are_kept ? "written on their own" : "removed");
+  for (const IslandSummary& island : islands.at_end) {
+    if (!island.is_main && island.first_timestamp && island.last_timestamp) {
+      Print("  part {}: {} from {:.3f} to {:.3f} s, {}{}\n", island.number,
+            Counted(island.frames, "frame"), *island.first_timestamp, *island.last_timestamp,
+            Counted(island.keyframes, "keyframe"),
+            island.ate_rmse_m ? fmt::format(", ATE RMSE {:.4f} m", *island.ate_rmse_m) : "");
+    }
+  }
+}
+
+// Where frames were lost, why, and what the user can try. Only the longest stretches are shown.
+void PrintLosses(std::span<const LostStretch> losses) {
+  constexpr size_t kMostShown = 5;
+  std::vector<const LostStretch*> shown;
+  for (const LostStretch& stretch : losses) {
+    shown.push_back(&stretch);
+  }
+  std::stable_sort(shown.begin(), shown.end(), [](const LostStretch* a, const LostStretch* b) {
+    return a->frames > b->frames;
+  });
+  shown.resize(std::min(shown.size(), kMostShown));
+  std::sort(shown.begin(), shown.end());
+  std::set<LossReason> reasons;
+  for (const LostStretch* stretch : shown) {
+    Print("lost: frames {} to {} ({}; {:.3f} to {:.3f} s): {}\n", stretch->first_frame,
+          stretch->last_frame, stretch->frames, stretch->first_timestamp, stretch->last_timestamp,
+          ToString(stretch->reason));
+    reasons.insert(stretch->reason);
+  }
+  if (losses.size() > shown.size()) {
+    Print("and {} shorter stretches (trajectory.losses in summary.json)\n",
+          losses.size() - shown.size());
+  }
+  for (const LossReason reason : reasons) {
+    Print("  {}: {}\n", ToString(reason), AdviceFor(reason));
+  }
+  if (!shown.empty()) {
+    Print("docs/my-run-fails.md has more about each reason\n");
+  }
+}
+
+// Where poses may be wrong although the camera was tracked. Only the longest stretch is named.
+void PrintUnsure(std::span<const UnsureStretch> unsure) {
+  if (unsure.empty()) {
+    return;
+  }
+  size_t frames = 0;
+  for (const UnsureStretch& stretch : unsure) {
+    frames += stretch.frames;
+  }
+  const auto longest = std::max_element(
+      unsure.begin(), unsure.end(),
+      [](const UnsureStretch& a, const UnsureStretch& b) { return a.frames < b.frames; });
+  Print(
+      "warning: the poses of {} frames are unsure, most of them in a row from {:.3f} to {:.3f} s "
+      "(frames {} to {}): they rest on landmarks that only two keyframes see, so the map may have "
+      "another scale and direction from there on (trajectory.unsure in summary.json; "
+      "docs/my-run-fails.md)\n",
+      frames, longest->first_timestamp, longest->last_timestamp, longest->first_frame,
+      longest->last_frame);
+}
+
+void PrintMap(const MapSummary& map) {
+  Print("{}, {}{}{}\n", Counted(map.keyframes, "keyframe"), Counted(map.landmarks, "landmark"),
+        map.landmarks_at_infinity > 0
+            ? fmt::format(" ({} of them as good as infinitely far away)", map.landmarks_at_infinity)
+            : "",
+        map.reprojection_px
+            ? fmt::format(", reprojection error {:.3f} px (median)", *map.reprojection_px)
+            : "");
+  if (map.contradicted_landmarks > 0) {
+    Print(
+        "{} removed because later depth images show that nothing is there; if there are many, "
+        "something without a mask has moved\n",
+        Counted(map.contradicted_landmarks, "landmark"));
+  }
+}
+
+std::string At(const Eigen::Vector3d& position) {
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", position.x(), position.y(), position.z());
+}
+
+std::string Describe(const ChangedObject& changed) {
+  const auto position = [](const std::optional<LocatedObject>& object) {
+    return At(object->ellipsoid.world_from_object.translation);
+  };
+  switch (changed.change) {
+    case ObjectChange::kMoved:
+      return fmt::format("  moved: {} (object {}) from {} to {}, object {} now\n", changed.label,
+                         changed.former->object.value, position(changed.former),
+                         position(changed.now), changed.now->object.value);
+    case ObjectChange::kGone:
+      return fmt::format("  gone:  {} (object {}) from {}\n", changed.label,
+                         changed.former->object.value, position(changed.former));
+    case ObjectChange::kNew:
+      return fmt::format("  new:   {} (object {}) at {}\n", changed.label,
+                         changed.now->object.value, position(changed.now));
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+void PrintResults(const RunArguments& arguments, const RunSummary& summary,
+                  const ObjectResults& objects) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  Print("{}: {} tracked, {} lost, {} skipped", Counted(trajectory.frames, "frame"),
+        trajectory.tracked, trajectory.lost, trajectory.skipped);
+  if (!summary.initialisation) {  // with depth, or a loaded map
+    const char* const lacking = arguments.sensor == SensorKind::kStereo ? "a partner" : "depth";
+    Print("{}\n",
+          arguments.sensor == SensorKind::kMonocular
+              ? std::string()
+              : fmt::format("; {} without {}", Counted(trajectory.unpaired, "image"), lacking));
+  } else if (summary.initialisation->seconds) {
+    Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
+  } else {
+    Print("; no map\n");
+  }
+  PrintIslands(summary.islands.value_or(IslandsSummary()), arguments.keep_islands);
+  PrintLosses(trajectory.losses);
+  PrintUnsure(trajectory.unsure);
+  if (trajectory.ate_rmse_m) {
+    Print(
+        "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",
+        *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
+        100.0 * trajectory.coverage.value_or(0.0));
+  }
+  if (trajectory.rpe_rmse_m && trajectory.rpe_rmse_deg) {
+    Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
+          *trajectory.rpe_rmse_deg);
+  }
+  PrintMap(summary.map);
+  if (summary.map.known_sizes) {
+    Print("{}\n", *summary.map.known_sizes > 0
+                      ? fmt::format("the unit of length is the metre (objects of known size: {})",
+                                    *summary.map.known_sizes)
+                      : "the unit of length is unknown: no object of a known size was mapped");
+  }
+  if (summary.objects) {
+    const bool is_metric =
+        trajectory.alignment != "sim3" || summary.map.known_sizes.value_or(0) > 0;
+    Print("{}\n", DescribeObjects(*summary.objects, is_metric ? "m" : "u"));
+    if (objects.changes) {
+      Print("{}", DescribeChanges(*objects.changes));
+    }
+  }
+  Print(
+      "tracking {:.1f} ms per frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s overall; "
+      "peak memory {:.0f} MB\n",
+      summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
+      summary.timing.frames_per_second, summary.peak_memory_mb);
+  Print("results are in {}\n", arguments.output.string());
+}
+
+std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
+                         const RunSummary& summary, std::span<const TrackedFrame> frames) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  if (!arguments.load_map.empty() && trajectory.tracked == 0) {
+    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
+                       arguments.load_map.string(), given);
+  }
+  if (summary.initialisation && !summary.initialisation->seconds) {
+    return fmt::format("no map could be made from {}: {}",
+                       Counted(summary.trajectory.frames, "frame"),
+                       DescribeFailures(*summary.initialisation));
+  }
+  const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);
+  const auto all = static_cast<double>(given);
+  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
+    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
+                       options.max_lost_share);
+  }
+  const auto last_tracked = std::find_if(
+      frames.rbegin(), frames.rend(),
+      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
+  if (last_tracked != frames.rend() &&
+      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
+    return fmt::format(
+        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
+        found, options.max_lost_at_end);
+  }
+  return {};
+}
+
+std::string FormatFigure(const std::optional<double>& figure, int decimals) {
+  return figure ? fmt::format("{:.{}f}", *figure, decimals) : std::string("-");
+}
+
+std::string DescribeChanges(const std::vector<ChangedObject>& changes) {
+  const std::map<std::string, size_t> counts = CountChanges(changes);
+  std::string text = fmt::format(
+      "objects of the map: {} seen again, {} moved, {} gone, {} not in view; {} new, {} at places "
+      "that were not seen before\n",
+      counts.at("seen_again"), counts.at("moved"), counts.at("gone"), counts.at("not_seen"),
+      counts.at("new"), counts.at("first_seen"));
+  for (const ChangedObject& changed : changes) {
+    text += Describe(changed);
+  }
+  return text;
+}
+
+std::string DescribeObjects(const ObjectsSummary& summary, const char* unit) {
+  return fmt::format(
+      "{}, {} not mapped; means: SIoU {} with hulls, {} with masks, tangent distance {} px, MTD {} "
+      "{}^2 (of {})",
+      Counted(summary.count, "object"), summary.candidates, FormatFigure(summary.siou_mean, 3),
+      FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
+      FormatFigure(summary.mtd_mean_m2, 5), unit, Counted(summary.observations, "observation"));
+}
+
+}  // namespace hullslam
