@@ -40,7 +40,7 @@ ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe,
 
 // The right image of a pair. `first` is its id if that of the keyframe is 0.
 ColmapImage MakeRightImage(const KeyframeImage& image, uint32_t first, double baseline,
-                           const Keyframe& keyframe, const PinholeView& view,
+                           const Keyframe& keyframe, const ExportCamera& view,
                            LandmarkKeypoints& landmarks) {
   const Rigid3 right_from_left{Eigen::Quaterniond::Identity(), {-baseline, 0.0, 0.0}};
   ColmapImage made{.id = first + image.keyframe.value,

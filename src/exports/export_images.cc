@@ -153,7 +153,7 @@ void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& v
   UseColours(colours, input.model);
 }
 
-void WriteRightImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteRightImages(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                       const ExportInput& input, ExportFolder& folder) {
   for (const KeyframeImage& image : images) {
     const ImageInput pair = input.sequence->load(image.frame, input.map->sensor.camera);

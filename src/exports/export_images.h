@@ -30,7 +30,7 @@ void WriteImages(const std::vector<KeyframeImage>& images, const ExportCamera& v
                  ExportInput& input, ExportFolder& folder);
 
 // Writes the undistorted right images "images/NAME_right.png" of a stereo camera, in grey.
-void WriteRightImages(const std::vector<KeyframeImage>& images, const PinholeView& view,
+void WriteRightImages(const std::vector<KeyframeImage>& images, const ExportCamera& view,
                       const ExportInput& input, ExportFolder& folder);
 
 // Writes "depths/NAME.png" for each image of an RGB-D run, and "masks/NAME.png", which is 0 where

@@ -75,7 +75,7 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera,
   if (!right_lines.empty() && TakesLines(options.residual)) {
     cost = std::make_unique<BothViewsCost>(
         std::move(cost),
-        MakeObjectCost(options.residual, camera, *view.detection, right_lines, *sigma),
+        MakeObjectCost(options.residual, camera, *observation.detection, right_lines, *sigma),
         camera.bf / camera.fx);
   }
   const double scale = std::max(options.loss_scale, options.min_loss_px / sigma_px);
