@@ -13,6 +13,7 @@
 #include "segmentation/decode_cells.h"
 #include "segmentation/decode_rows.h"
 #include "segmentation/onnx_file.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -127,7 +128,7 @@ std::string Guess(std::span<const NetworkOutput> outputs) {
 std::string DescribeOutputs(std::span<const NetworkOutput> outputs) {
   std::string text;
   for (const NetworkOutput& output : outputs) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", output.name,
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", Printable(output.name),
                         DescribeShape(ShapeOf(output.values)));
   }
   return text;

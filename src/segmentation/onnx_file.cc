@@ -2,7 +2,6 @@
 #include "segmentation/onnx_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -12,6 +11,8 @@
 #include "files/protobuf_reader.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
+#include "util/counted.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -145,10 +146,12 @@ OnnxFile ReadOnnx(const std::filesystem::path& path) {
                                  Guess(file.bytes), error.what()));
   }
   if (!weight_files.empty()) {
+    constexpr size_t kShown = 200;  // bytes of a name, which may be anything in a broken file
     throw InputError(fmt::format(
-        "{}: the weights are in other files ({}), expected one file; scripts/prepare_network.py "
+        "{}: the weights are in {}, first '{}', expected one file; scripts/prepare_network.py "
         "joins them",
-        path.string(), fmt::join(weight_files, ", ")));
+        path.string(), Counted(weight_files.size(), "other file"),
+        Printable(weight_files.begin()->substr(0, kShown))));
   }
   return file;
 }

@@ -21,6 +21,7 @@
 #include "segmentation/suppress_overlaps.h"
 #include "util/components.h"
 #include "util/edit_distance.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -36,10 +37,10 @@ std::optional<cv::Size> DeclaredSize(const fs::path& path, const OnnxFile& file)
   const OnnxValue& input = file.inputs.front();
   if (file.inputs.size() != 1 || input.shape.size() != 4 ||
       (input.shape[1] != 3 && input.shape[1] != -1)) {
-    throw InputError(
-        fmt::format("{}: has {} inputs, the first one is '{}' of {}, expected one of "
-                    "1x3xHxW, an image",
-                    path.string(), file.inputs.size(), input.name, DescribeShape(input.shape)));
+    throw InputError(fmt::format(
+        "{}: has {} inputs, the first one is '{}' of {}, expected one of "
+        "1x3xHxW, an image",
+        path.string(), file.inputs.size(), Printable(input.name), DescribeShape(input.shape)));
   }
   const int64_t height = input.shape[2];
   const int64_t width = input.shape[3];
@@ -102,7 +103,7 @@ std::vector<bool> ChooseClasses(const std::vector<std::string>& names,
   throw InputError(fmt::format(
       "{}: OpenCV {} cannot {} this network ({}), expected one that scripts/prepare_network.py has "
       "prepared (docs/segmentation.md)",
-      path.string(), CV_VERSION, what, error.err));
+      path.string(), CV_VERSION, what, Printable(error.err)));
 }
 
 }  // namespace

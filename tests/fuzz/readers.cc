@@ -341,7 +341,7 @@ void FuzzNetworkOutputs(std::string_view bytes) {
   std::vector<NetworkOutput> outputs = layouts[static_cast<unsigned char>(bytes[0]) % 4];
   if (outputs.size() == 1) {
     outputs[0].values *= std::ldexp(1.0, static_cast<signed char>(bytes[1]));
-    outputs[0].values = cv::min(outputs[0].values, 1e30);
+    outputs[0].values = cv::max(cv::min(outputs[0].values, 1e30), -1e30);
   }
   outputs.push_back(MakeOutput(rest, {1, 4, 16, 24}));
   const cv::Size input(96, 64);
