@@ -248,7 +248,8 @@ StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& sele
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
   LoadPairs(rectifier, sequence.images);
-  AddStates(root, calibration ? calibration->left.body_from_cam : std::nullopt, sequence.images);
+  AddStates(root, calibration ? std::optional(calibration->left.body_from_cam) : std::nullopt,
+            sequence.images);
   const fs::path truth = folder / "groundtruth.txt";
   std::error_code error;
   if (!sequence.images.converted_groundtruth && fs::is_regular_file(truth, error)) {
