@@ -393,6 +393,7 @@ class System:
         mode 'rgbd'.
         masks: Masks of the objects in the image, or None.
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
+        masks_right: Masks of the objects in the right image, or None.
         timestamp: s, larger than that of the frame before.
         Raises InputError for anything else; a refused frame changes nothing.
         """

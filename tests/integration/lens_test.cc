@@ -82,10 +82,10 @@ TEST_F(Lens, APairOfFisheyeLensesIsRectifiedAndTracked) {
                                     "--stereo", "0.12", "--quiet"});
   ASSERT_EQ(rendered.exit_code, 0) << rendered.errors;
   const ProgramResult result =
-      RunProgram("stereo_folder", {desk, "--masks", desk / "masks", "--output", desk / "out"});
+      RunProgram("stereo_folder", {desk, "--masks", desk / "masks", "--output", folder_.path() / "out"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("stereo: baseline 0.1200 m"), std::string::npos) << result.output;
-  const auto summary = nlohmann::json::parse(ReadText(desk / "out/summary.json"));
+  const auto summary = nlohmann::json::parse(ReadText(folder_.path() / "out/summary.json"));
   EXPECT_EQ(summary["trajectory"]["tracked"], kPairs);
   EXPECT_LT(summary["trajectory"]["ate_rmse_m"].get<double>(), 0.003);
 }

@@ -114,7 +114,7 @@ TEST_F(MonoEuroc, BrokenFoldersAreRefused) {
   WriteSensor({.fx = 500.0, .fy = 500.0, .cx = 375.5, .cy = 239.5, .width = 752});
   ExpectRefusal({path_}, {".png", "640x480", "752x480"});
   fs::remove(Camera() / "sensor.yaml");
-  ExpectRefusal({path_}, {"sensor.yaml", "No such file"});
+  ExpectRefusal({path_}, {"has neither cam0/sensor.yaml nor a camchain"});
   folder_.Write("sequence/mav0/cam0/sensor.yaml", good);
   folder_.Write("sequence/mav0/cam0/data.csv", "1000,1000.png,7\n");
   ExpectRefusal({path_}, {"data.csv:1: 3 column(s), expected 2"});

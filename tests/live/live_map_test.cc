@@ -13,6 +13,13 @@ namespace {
 
 class LiveMapTest : public ::testing::Test {
  protected:
+  // Each keyframe has a frame of its own.
+  std::shared_ptr<const Frame> AsNextFrame(const std::shared_ptr<const Frame>& frame) const {
+    auto next = std::make_shared<Frame>(*frame);
+    next->id = made_.map.NextFrame();
+    return next;
+  }
+
   SyntheticWorld world_;
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 10, 20});
 };
@@ -54,7 +61,7 @@ TEST_F(LiveMapTest, SendsWhatMovesAndWhatIsGone) {
 TEST_F(LiveMapTest, WhatCanBeSeenDoesNotDependOnTheSizeOfTheMap) {
   const Rigid3 far_away(Eigen::Quaterniond::Identity(), {5000.0, 0.0, 0.0});
   const SyntheticView& view = made_.views[0];
-  const KeyframeId keyframe = made_.map.AddKeyframe(view.frame, far_away);
+  const KeyframeId keyframe = made_.map.AddKeyframe(AsNextFrame(view.frame), far_away);
   for (uint32_t keypoint = 0; keypoint < view.points.size(); ++keypoint) {
     const LandmarkId landmark =
         made_.map.AddLandmark(Inverse(far_away) * world_.points()[view.points[keypoint]], keyframe);
@@ -117,7 +124,7 @@ TEST_F(LiveMapTest, AChangeIsLimited) {
 
 TEST_F(LiveMapTest, OnlyTheMainIslandIsShown) {
   const IslandId island = made_.map.BeginIsland();
-  made_.map.AddKeyframe(made_.views[0].frame, Rigid3(), island);
+  made_.map.AddKeyframe(AsNextFrame(made_.views[0].frame), Rigid3(), island);
   LiveMap live(world_.sensor(), 0.0, {});
   live.Follow(made_.map, false);
   EXPECT_EQ(live.keyframes().size(), 3u);
