@@ -358,6 +358,7 @@ class System:
         seed: seed of all random choices.
         """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
+              right: _Image | None = None, masks_right: Masks | None = None,
               timestamp: float) -> TrackResult:
         """Finds the pose of the camera in the next frame: TrackResult.
 
@@ -369,6 +370,7 @@ class System:
         mode 'rgbd'.
         masks: Masks of the objects in the image, or None.
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
+        masks_right: Masks of the objects in the right image, or None.
         timestamp: s, larger than that of the frame before.
         Raises InputError for anything else; a refused frame changes nothing.
         """
