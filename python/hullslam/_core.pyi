@@ -382,6 +382,7 @@ class System:
         seed: seed of all random choices.
         """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
+              right: _Image | None = None, masks_right: Masks | None = None,
               timestamp: float) -> TrackResult:
         """Finds the pose of the camera in the next frame: TrackResult.
 

@@ -52,6 +52,23 @@ Patch CutPatch(const cv::Mat& image, int x, int y) {
   return patch;
 }
 
+// Gaussian weights about the middle, whose mean is 1. Beside a corner at the side of an object the
+// patch shows the background, whose disparity is smaller; so the weights fall to 1/e at its rim.
+Patch CentreWeights() {
+  Patch weights;
+  float sum = 0.0F;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto x = static_cast<float>(i % kSide - kHalfPatch);
+    const auto y = static_cast<float>(i / kSide - kHalfPatch);
+    weights[static_cast<size_t>(i)] = std::exp(-(x * x + y * y) / (kHalfPatch * kHalfPatch));
+    sum += weights[static_cast<size_t>(i)];
+  }
+  for (float& weight : weights) {
+    weight *= static_cast<float>(weights.size()) / sum;
+  }
+  return weights;
+}
+
 // One number per shift of the patch. The last ones are not used; they let a compiler work on eight
 // at a time.
 using PerShift = std::array<float, 16>;
@@ -77,13 +94,15 @@ class Strip {
     }
   }
 
-  // The mean absolute difference of the patch from each of those in the strip, less their means.
+  // The weighted mean absolute difference of the patch from each of those in the strip, less their
+  // means.
   PerShift Differences(const Patch& patch) const {
     const PerShift means = Means();
     PerShift sums{};
+    static const Patch weights = CentreWeights();
     ForEachPixel([&](size_t i, const float* pixels) {
       for (size_t shift = 0; shift < sums.size(); ++shift) {
-        sums[shift] += std::abs(patch[i] - (pixels[shift] - means[shift]));
+        sums[shift] += weights[i] * std::abs(patch[i] - (pixels[shift] - means[shift]));
       }
     });
     for (float& sum : sums) {

@@ -69,6 +69,43 @@ TEST_F(StereoMatcherTest, FindsTheDisparitiesOfAPlaneToAFractionOfAPixel) {
   EXPECT_LT(errors[errors.size() * 95 / 100], 1.0F);
 }
 
+// Squares of 60 px at a disparity of 30 px before a background at 22 px.
+TEST_F(StereoMatcherTest, TheBackgroundBesideAnObjectMovesItsDisparityLittle) {
+  constexpr int kSide = 60;
+  constexpr int kOfSquares = 30;
+  constexpr int kOfBackground = 22;
+  const cv::Mat front = MakeCornerImage(640, 480, 8);
+  cv::Mat left = MakeCornerImage();
+  cv::Mat right(left.size(), CV_8UC1, cv::Scalar(128));
+  left.colRange(kOfBackground, 640).copyTo(right.colRange(0, 640 - kOfBackground));
+  std::vector<cv::Rect> squares;
+  for (int y = 40; y + kSide < 460; y += 2 * kSide) {
+    for (int x = 40; x + kSide < 620; x += 2 * kSide) {
+      const cv::Rect square(x, y, kSide, kSide);
+      front(square).copyTo(left(square));
+      front(square).copyTo(right(square - cv::Point(kOfSquares, 0)));
+      squares.push_back(square);
+    }
+  }
+  const std::vector<float> disparities = Match(left, right);
+  size_t count = 0;
+  double sum = 0.0;  // of the errors in pixels of the level, those of wrong matches as 2
+  for (size_t i = 0; i < disparities.size(); ++i) {
+    const RawKeypoint& keypoint = features_.keypoints[i];
+    const cv::Point pixel(static_cast<int>(keypoint.raw.x()), static_cast<int>(keypoint.raw.y()));
+    const bool is_on_square = std::ranges::any_of(
+        squares, [&](const cv::Rect& square) { return square.contains(pixel); });
+    if (disparities[i] > 0.0F && is_on_square) {
+      const float error =
+          (disparities[i] - kOfSquares) / left_.levels().scale[static_cast<size_t>(keypoint.level)];
+      sum += static_cast<double>(std::clamp(error, -2.0F, 2.0F));
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 100U);
+  EXPECT_LT(std::abs(sum / static_cast<double>(count)), 0.035) << "0.045 with equal weights";
+}
+
 TEST_F(StereoMatcherTest, ADarkerRightImageChangesNothing) {
   const cv::Mat left = MakeCornerImage();
   const size_t found = Found(Match(left, RightOf(left)));

@@ -97,6 +97,9 @@ def test_a_depth_image_of_a_monocular_camera(settings):
 def test_the_second_image_is_that_of_the_mode(settings, slam):
     refuse("there is a right image, expected None in the mode 'rgbd'",
            slam.track, IMAGE, DEPTH, right=IMAGE, timestamp=0.0)
+    refuse("there are masks of a right image, expected none", slam.track, IMAGE, DEPTH,
+           masks_right=hullslam.Masks.from_outlines([[[0, 0], [90, 0], [90, 90]]], ["cup"]),
+           timestamp=0.0)
     stereo = hullslam.System(settings, "stereo")
     refuse("right is None, expected the right image", stereo.track, IMAGE, timestamp=0.0)
     refuse("there is a depth image, expected None in the mode 'stereo'",

@@ -72,8 +72,10 @@ class Wall:
         """The image of a second camera, `baseline` m to the right."""
         return self._photograph(index, baseline)
 
-    def masks(self, index):
+    def masks(self, index, shift=0):
+        """The mask of the picture, moved to the left by `shift` px as in a right image."""
         x, y, _ = self.center(index) * CAMERA["fx"] / self.DISTANCE
+        x += shift
         stack = np.zeros((1, HEIGHT, WIDTH), bool)
         stack[0, int(100 - y):int(150 - y), int(140 - x):int(200 - x)] = True
         return hullslam.Masks(stack, ["picture"], [0.9])

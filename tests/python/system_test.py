@@ -67,7 +67,12 @@ def test_a_stereo_camera_measures_the_distance(settings, wall):
     settings["Camera.bf"] = 0.1 * 260.0
     slam = hullslam.System(settings, "stereo")
     for i in range(12):
-        result = slam.track(wall.image(i), right=wall.right(i, 0.1), timestamp=i / 30.0)
+        result = slam.track(wall.image(i), right=wall.right(i, 0.1), masks=wall.masks(i),
+                            masks_right=wall.masks(i, 13), timestamp=i / 30.0)
+    assert "mask_not_in_left" not in slam.object_counts["rejections"]
+    slam.track(wall.image(12), right=wall.right(12, 0.1), masks=wall.masks(12),
+               masks_right=wall.masks(12, 60), timestamp=0.4)
+    assert slam.object_counts["rejections"]["mask_not_in_left"] == 1
     assert result.state == "tracked"
     assert result.world_from_cam[:3, 3] == pytest.approx(Wall.center(11), abs=0.01)
     slam.finish()
