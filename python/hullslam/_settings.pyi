@@ -68,7 +68,7 @@ class _ORBextractor:
 
 class _depth:
     adjustment_pixel_sigma: float
-    """error of a keypoint of pyramid level 0 in bundle adjustment, px (a number from 0.01 to 100; default 1)"""
+    """error of a keypoint of pyramid level 0 in bundle adjustment, px (a number from 0.01 to 100; default 0.8)"""
     adjustment_rule: Literal["hullslam", "orb_slam2"]
     """weights and loss of keypoints without depth in bundle adjustment: measured precision and Cauchy's loss, or fixed sigmas and Huber's loss (one of: hullslam, orb_slam2; default hullslam)"""
     disparity_sigma: float
@@ -76,7 +76,7 @@ class _depth:
     model: Literal["disparity", "right_column"]
     """error of a keypoint with depth: pixel and disparity have independent errors, or both columns of a stereo camera have the error of the keypoint (one of: disparity, right_column; default disparity)"""
     pixel_sigma: float
-    """error of a keypoint of pyramid level 0 in tracking and mapping, px (a number from 0.01 to 100; default 0.7)"""
+    """error of a keypoint of pyramid level 0 in tracking and mapping, px (a number from 0.01 to 100; default 0.56)"""
 
 class _loop:
     closing: bool

@@ -21,12 +21,14 @@ enum class AdjustmentRule { kHullslam, kOrbSlam2 };
 struct DepthErrorOptions {
   DepthErrorModel model = DepthErrorModel::kDisparity;
   // Standard deviation of the coordinates of a keypoint of level 0 of the image pyramid, px. At
-  // other levels it is multiplied by the scale of the level.
-  double pixel_sigma = 0.7;
+  // other levels it is multiplied by the scale of the level. Where features lie on whole pixels,
+  // 0.7: refining them lowers the mean error of reprojection on freiburg1_xyz from 0.98 to 0.79 px,
+  // so both sigmas are 0.8 times as large.
+  double pixel_sigma = 0.56;
   // The same in bundle adjustment. It is larger there because it also sets the weight of points
   // against objects and the bound at which an observation is removed from the map
   // (docs/decisions.md).
-  double adjustment_pixel_sigma = 1.0;
+  double adjustment_pixel_sigma = 0.8;
   // Standard deviation of the disparity bf / z, px, the same at all levels. Sensors are more
   // precise than the default, but the pixel that the depth is taken from need not show the
   // landmark.
