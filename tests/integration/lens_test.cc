@@ -81,8 +81,8 @@ TEST_F(Lens, APairOfFisheyeLensesIsRectifiedAndTracked) {
       RunProgram("make_synthetic", {desk, "--frames", std::to_string(kPairs), "--fisheye", "120",
                                     "--stereo", "0.12", "--quiet"});
   ASSERT_EQ(rendered.exit_code, 0) << rendered.errors;
-  const ProgramResult result =
-      RunProgram("stereo_folder", {desk, "--masks", desk / "masks", "--output", folder_.path() / "out"});
+  const ProgramResult result = RunProgram(
+      "stereo_folder", {desk, "--masks", desk / "masks", "--output", folder_.path() / "out"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("stereo: baseline 0.1200 m"), std::string::npos) << result.output;
   const auto summary = nlohmann::json::parse(ReadText(folder_.path() / "out/summary.json"));
