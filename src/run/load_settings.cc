@@ -45,6 +45,7 @@ void TakeNotes(SettingsNotes report, LoadedSettings& settings) {
   settings.camera_note = std::move(report.camera_note);
   settings.read_width = report.read_width;
   settings.read_height = report.read_height;
+  settings.has_baseline = report.has_baseline;
   settings.preset_overrides = std::move(report.preset_overrides);
 }
 

@@ -23,9 +23,10 @@ struct LoadedSettings {
   SystemOptions options;
   std::optional<Preset> preset = std::nullopt;
   std::vector<PresetOverride> preset_overrides = {};
-  std::string camera_note = {};  // this and the size as in SettingsNotes
+  std::string camera_note = {};  // this and the others as in SettingsNotes
   int read_width = 0;
   int read_height = 0;
+  bool has_baseline = false;
 };
 
 // A settings file and the reason why a program takes it.

@@ -120,14 +120,17 @@ void SettingsInProgress::ApplyFile(const fs::path& file, const YAML::Node& root)
   }
 }
 
-// Each value is set as if a file had it, so that its range is checked.
+// Each value is set as if a file had it, so that its range is checked. Most calibrations have no
+// baseline; the default of the camera is not one of theirs.
 void SettingsInProgress::ApplyCalibration(const CameraCalibration& calibration,
                                           const std::string& source) {
   SystemOptions given;
   given.camera = calibration.camera;
   given.frames_per_second = calibration.frames_per_second;
   for (const OptionTable::Entry& entry : given.Bind().Entries()) {
-    if (entry.key.starts_with("Camera.")) {
+    const bool is_default_baseline =
+        entry.key == "Camera.bf" && calibration.camera.bf == PinholeCamera().bf;
+    if (entry.key.starts_with("Camera.") && !is_default_baseline) {
       Set(entry.key, entry.value, source);
     }
   }
@@ -212,6 +215,7 @@ SystemOptions SettingsInProgress::Finish(SettingsNotes& report) {
   options_.Validate();
   report.warnings.clear();
   NoteOverrides(report);
+  report.has_baseline = IsGiven("Camera.bf");
   for (const std::string& warning : {of_image, of_shutter}) {
     if (!warning.empty()) {
       report.warnings.push_back(warning);

@@ -31,6 +31,8 @@ Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
 
 // ---- ORB-SLAM2
 
+bool IsOrb2Pair(const YamlMap& file) { return file.Has("LEFT.K") || file.Has("RIGHT.K"); }
+
 PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
   const std::vector<double> k = file.Matrix(side + ".K", 9);
   PinholeCamera camera{.fx = k[0],
@@ -69,6 +71,8 @@ StereoCalibration PairOfOrb2(const YamlMap& file) {
 
 // ---- ORB-SLAM3
 
+bool IsOrb3Pair(const YamlMap& file) { return file.Has("Camera2.fx") || file.Has(kPose); }
+
 StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   StereoCalibration pair{camera, camera, {}};
   const auto number = [&](const char* name) {
@@ -105,12 +109,17 @@ bool IsStereoKey(std::string_view key) {
          key == kPose;
 }
 
+bool HasRightCamera(const fs::path& file) {
+  const YamlMap settings(file, "settings");
+  return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings);
+}
+
 std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {
   const YamlMap settings(file, "settings");
-  if (settings.Has("LEFT.K") || settings.Has("RIGHT.K")) {
+  if (IsOrb2Pair(settings)) {
     return PairOfOrb2(settings);
   }
-  if (settings.Has("Camera2.fx") || settings.Has(kPose)) {
+  if (IsOrb3Pair(settings)) {
     return PairOfOrb3(settings, camera);
   }
   if (IsCamchain(settings)) {

@@ -26,6 +26,9 @@ bool IsStereoKey(std::string_view key);
 std::optional<StereoCalibration> ReadStereoPair(const std::filesystem::path& file,
                                                 const PinholeCamera& camera);
 
+// Whether the file describes a right camera of its own, and not one camera with Camera.bf.
+bool HasRightCamera(const std::filesystem::path& file);
+
 // The rectifier of that pair; null without one.
 std::shared_ptr<const StereoRectifier> MakeRectifier(const std::filesystem::path& file,
                                                      const PinholeCamera& camera);

@@ -129,6 +129,26 @@ TEST_F(Stereo, WrongPairsAreRefusedBeforeTheFirstFrame) {
   ExpectRefusal({path_, "--settings", WriteSettings(0.0)}, {"Camera.bf"});
 }
 
+TEST_F(Stereo, SettingsWithoutABaselineAreRefused) {
+  room_.WritePairs(path_, "left", "right", 3, kBaseline);
+  std::string text = ReadFile(WriteSettings(kBaseline));
+  text.erase(text.find("Camera.bf"));
+  const std::string one = folder_.Write("one.yaml", text);
+  ExpectRefusal({path_, "--settings", one}, {one, "has no baseline", "Camera.bf"});
+  EXPECT_EQ(Run({path_, "--settings", one, "--set",
+                 fmt::format("Camera.bf={}", kBaseline * room_.camera().fx)})
+                .exit_code,
+            0);
+}
+
+TEST_F(Stereo, ImagesThatAreRectifiedAreNotResized) {
+  room_.WritePairs(path_, "left", "right", 3, kBaseline);
+  const std::string text = ReadFile(WriteSettings(kBaseline));
+  const std::string bent = folder_.Write("bent.yaml", text + "Camera.k1: 0.01\n");
+  ExpectRefusal({path_, "--settings", bent, "--set", "Camera.imageScale=0.5"},
+                {bent, "Camera.imageScale"});
+}
+
 class StereoBag : public Stereo {
  protected:
   StereoBag() : Stereo("stereo_bag") {}

@@ -58,6 +58,7 @@ struct SettingsNotes {
   // camera is that of the resized images.
   int read_width = 0;
   int read_height = 0;
+  bool has_baseline = false;  // whether any of the sources has Camera.bf
 };
 
 // The same with a preset, whose settings the file and the overrides replace.

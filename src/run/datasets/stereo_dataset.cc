@@ -43,6 +43,25 @@ std::string DescribeCamera(const PinholeCamera& camera) {
                      camera.bf / camera.fx, camera.fx);
 }
 
+// The rectifier of a settings file (MakeRectifier). Throws InputError if the file does not tell how
+// far the cameras are apart, or if images are to be resized that must be rectified.
+std::shared_ptr<const StereoRectifier> RectifierOf(const std::filesystem::path& file,
+                                                   const LoadedSettings& settings) {
+  if (!settings.has_baseline && !HasRightCamera(file)) {
+    throw InputError(file.string() +
+                     ": has no baseline, expected Camera.bf (the baseline times Camera.fx) or the "
+                     "calibration of both cameras");
+  }
+  auto rectifier = MakeRectifier(file, settings.options.camera);
+  if (rectifier != nullptr && settings.read_width > 0) {
+    throw InputError(file.string() +
+                     ": asks for resized images, which is not possible where both images are "
+                     "rectified, expected neither Camera.newWidth, Camera.newHeight nor "
+                     "Camera.imageScale");
+  }
+  return rectifier;
+}
+
 DatasetInput Finish(const RunArguments& arguments, LoadedSettings settings, ImageSequence sequence,
                     std::vector<std::string> notes) {
   CheckPairs(arguments.sequence, sequence, settings.options.camera);
@@ -119,8 +138,7 @@ class StereoFolder final : public Dataset {
       }
     }
     LoadedSettings settings = LoadSettings(file, arguments.preset, arguments.overrides);
-    const std::shared_ptr<const StereoRectifier> rectifier =
-        MakeRectifier(file, settings.options.camera);
+    const std::shared_ptr<const StereoRectifier> rectifier = RectifierOf(file, settings);
     ImageSequence sequence = OpenStereoFolder(
         arguments.sequence, {.rectifier = rectifier,
                              .frames_per_second = settings.options.frames_per_second,
@@ -171,7 +189,7 @@ class StereoBag final : public Dataset {
     std::shared_ptr<const StereoRectifier> rectifier;
     if (!options_.need_camera) {
       given = LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
-      rectifier = MakeRectifier(arguments.settings, given->options.camera);
+      rectifier = RectifierOf(arguments.settings, *given);
     }
     BagPairs bag = OpenBagPairs(arguments.sequence, options_, rectifier);
     for (const std::string& warning : bag.warnings) {
