@@ -178,7 +178,7 @@ class LengthsTest(CheckDocsTest):
         self.assert_good("", pages)
         self.assert_fault("", "docs: 26 pages", files={**pages, "docs/more/23.md": ""})
         self.assert_good("", {"docs/a.md": "a\n" * 34900})
-        self.assert_fault("", "docs: 35", "words", files={"docs/a.md": "a\n" * 35000})
+        self.assert_fault("", "docs: 36", "words", files={"docs/a.md": "a\n" * 36000})
 
 
 class ProgramsTest(CheckDocsTest):
