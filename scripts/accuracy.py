@@ -22,6 +22,7 @@ Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped,
 import json
 import pathlib
 import shutil
+import subprocess
 import sys
 
 from support import exit_code, InputError, parser_of, programs_folder, require, try_read_json, write
@@ -32,9 +33,9 @@ from paper_tables.engine import (PLAN, make_all, read_results, result_file,  # n
                                  stop_by_signals, table_lock)
 from paper_tables.files import markdown_lines  # noqa: E402
 from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
-                               frame_line, run_report)
+                               frame_line, new_lines, run_report)
 from paper_tables.plan import Planner, Request, Tools, add_case, chosen  # noqa: E402
-from paper_tables.sequences import call_renderer, find_sequence, needed_renderings  # noqa: E402
+from paper_tables.sequences import Renderings, call_renderer, find_sequence, probe_hash  # noqa: E402
 from paper_tables.tables import REPORT_VERSION, read_report  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
@@ -42,22 +43,22 @@ TOP = SCRIPTS.parent
 ACCEPTED = TOP / "docs" / "results" / "accuracy.json"
 
 
-def make_renderings(definitions, cases, arguments, tools):
-    needed = needed_renderings(definitions, cases, arguments.renderings)
-    for index, (folder, options) in enumerate(needed.items(), 1):
-        print(f"rendering {index} of {len(needed)}: {folder}", file=sys.stderr, flush=True)
+def make_renderings(renderings, cases):
+    missing = renderings.missing(cases)
+    for index, (folder, options) in enumerate(missing.items(), 1):
+        print(f"rendering {index} of {len(missing)}: {folder}", file=sys.stderr, flush=True)
         folder.parent.mkdir(parents=True, exist_ok=True)
-        call_renderer(tools.path("make_synthetic"), options)
+        call_renderer(renderings.program, options)
 
 
-def make_plan(definitions, cases, arguments, tools):
+def make_plan(definitions, cases, arguments, tools, renderings):
     """(plan, names of the recordings that are absent). --quick takes one run of each case, mode and
     variant."""
     planner = Planner(Request(definitions, [], timeout=arguments.timeout), tools)
     absent, most = {}, 1 if arguments.quick else None
     for case in cases:
         for seed in case.seeds[:most]:
-            sequence = find_sequence(case, seed, arguments.data, arguments.renderings, tools.config)
+            sequence = find_sequence(case, seed, arguments.data, renderings, tools.config)
             if sequence is None:
                 absent.setdefault(case.sequence, []).append(case.name)
             else:
@@ -77,15 +78,17 @@ def list_runs(plan, out):
     print(f"{len(plan['runs'])} runs")
 
 
-def make_report(plan, out):
-    """The figures of the runs that are done, in the form of a tables.json."""
+def make_report(plan, out, renderings):
+    """The figures of the runs that are done, in the form of a tables.json. "rendering" is the hash of
+    a short rendering, with which a test compares the renderer of later commits."""
     results = {name: result for name, result in read_results(plan, out).items() if result}
     runs = {}
     for name, result in results.items():
         summary = try_read_json(out / "runs" / name / "out" / "summary.json") or {}
         runs[name] = run_report(name, plan["runs"][name], result, out, summary)
     builds = sorted({result["git"] for result in results.values() if result.get("git")})
-    return {"version": REPORT_VERSION, "git": builds, "runs": runs}
+    return {"version": REPORT_VERSION, "git": builds, "rendering": probe_hash(renderings.program),
+            "runs": runs}
 
 
 def json_text(report):
@@ -107,18 +110,16 @@ def build_name(report):
     return ", ".join(report.get("git") or ["unknown"])
 
 
-def compare(old, new, out):
-    """Prints and writes the comparison. Returns whether something got worse."""
+def compare(old, new, out, is_accepted):
+    """Prints and writes the comparison. Returns whether something got worse. Figures that are accepted
+    may all be new."""
     comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
                             new["runs"])
-    if not comparison.common:
-        raise InputError("no run is in both reports, so there is nothing to compare")
+    if not comparison.common and not is_accepted:
+        raise InputError("no run is in both reports with the same input, so there is nothing to compare")
     lines = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])
              for report in (old, new)]
-    others = comparison.other_input()
-    if others:
-        lines.append(f"note: the images or settings of {len(others)} runs are others than then, "
-                     f"such as {others[0]}")
+    lines += new_lines(comparison)
     lines += [*disaster_lines(comparison), *family_lines(comparison)]
     head = [f"# Accuracy: {build_name(old)} -> {build_name(new)}", "",
             *(f"* {line}" for line in lines), ""]
@@ -132,6 +133,27 @@ def compare(old, new, out):
     return comparison.is_worse()
 
 
+def commit_to_accept(renderings):
+    """The commit of this checkout. Accepted figures must be those of a commit and of its renderer, so
+    that they can be made again."""
+    if not renderings.program.resolve().is_relative_to(TOP):
+        raise InputError(f"--accept: {renderings.program} is not a program of {TOP}")
+    result = subprocess.run(["git", "-C", str(TOP), "describe", "--always", "--dirty"],
+                            capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise InputError(f"--accept: {TOP} is no checkout of git")
+    if result.stdout.strip().endswith("-dirty"):
+        raise InputError(f"--accept: {TOP} has changes that are not committed (git status)")
+    return result.stdout.strip()
+
+
+def check_builds(report, commit):
+    others = [build for build in report["git"] or ["unknown"] if build != commit]
+    if others:
+        raise InputError(f"--accept: the runs are of {', '.join(others)}, and {TOP} is at {commit}; "
+                         "configure and build it, and run again")
+
+
 def accept(report, absent, out, is_part):
     """With --only, the other cases keep their figures."""
     if absent:
@@ -142,6 +164,7 @@ def accept(report, absent, out, is_part):
         known, cases = read_report(ACCEPTED), {run["case"] for run in report["runs"].values()}
         kept = {name: run for name, run in known["runs"].items() if run.get("case") not in cases}
         write(ACCEPTED, json_text({**known, "git": sorted({*known["git"], *report["git"]}),
+                                   "rendering": report["rendering"],
                                    "runs": kept | report["runs"]}))
     else:
         shutil.copyfile(out / "accuracy.json", ACCEPTED)
@@ -155,8 +178,10 @@ def gate(arguments):
     definitions = read_definitions(arguments.definitions, "cases")
     cases = [definitions.cases[name] for name in chosen(arguments.only, definitions.cases, "--only")]
     old = read_report(arguments.compare or ACCEPTED) if arguments.compare or ACCEPTED.is_file() else None
-    make_renderings(definitions, cases, arguments, tools)
-    plan, absent = make_plan(definitions, cases, arguments, tools)
+    renderings = Renderings(arguments.renderings, tools.path("make_synthetic"), definitions)
+    commit = commit_to_accept(renderings) if arguments.accept else None
+    make_renderings(renderings, cases)
+    plan, absent = make_plan(definitions, cases, arguments, tools, renderings)
     if arguments.list:
         list_runs(plan, out)
         return 0
@@ -165,13 +190,13 @@ def gate(arguments):
         write(out / PLAN, json.dumps(plan, indent=1) + "\n")
         if not arguments.so_far:
             make_all(plan, out, arguments.jobs, is_quiet=arguments.quiet)
-        report = make_report(plan, out)
+        report = make_report(plan, out, renderings)
         write(out / "accuracy.json", json_text(report))
-        is_new = arguments.accept and old is not None and not report["runs"].keys() & old["runs"].keys()
-        is_worse = old is not None and not is_new and compare(old, json.loads(json_text(report)), out)
+        is_worse = old is not None and compare(old, json.loads(json_text(report)), out, arguments.accept)
     if old is None:
         print(f"note: {ACCEPTED} does not exist, so nothing is compared", file=sys.stderr)
     if arguments.accept:
+        check_builds(report, commit)
         accept(report, absent, out, arguments.only is not None)
     return int(is_worse and not arguments.accept)
 

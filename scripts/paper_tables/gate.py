@@ -169,7 +169,7 @@ class Comparison:
     after: dict
 
     def __post_init__(self):
-        self.common = [name for name in self.after if name in self.before]
+        self.common = [name for name in self.after if self.has_same_input(name)]
         self.changes = {key: self.changes_of(measure) for key, measure in MEASURES.items()}
         self.cases = self.compare_cases()
         self.families = self.compare_families()
@@ -237,9 +237,13 @@ class Comparison:
         return bool(self.disasters) or any(told == "worse" for table in tables
                                            for _, _, told in table.values())
 
-    def other_input(self):
-        return [name for name in self.common
-                if self.before[name].get("input") != self.after[name]["input"]]
+    def has_same_input(self, name):
+        """Figures of other images or settings tell nothing about the program."""
+        return name in self.before and self.before[name].get("input") == self.after[name]["input"]
+
+    def new(self):
+        """The runs that are not compared: they were not there before, or had another input."""
+        return [name for name in self.after if name not in self.common]
 
 
 def is_crash(run):
@@ -313,6 +317,16 @@ def disaster_lines(comparison):
             measure = MEASURES[key]
             yield (f"worse: {name}: {measure.title} {number(measure, old)} -> "
                    f"{number(measure, new)}")
+
+
+def new_lines(comparison):
+    """The figures of the runs that are not compared."""
+    for name in comparison.new():
+        run = comparison.after[name]
+        shown = [f"{MEASURES[key].title} {number(MEASURES[key], value)}" for key in ("ate", "unknown", "wrong")
+                 if (value := value_of(MEASURES[key], run)) is not None]
+        why = "has another input than before" if name in comparison.before else "is new"
+        yield f"not compared: {name} {why}: {', '.join(shown) or 'no figures'}"
 
 
 def frame_line(title, runs):

@@ -4,6 +4,7 @@ that make_synthetic renders."""
 
 import dataclasses
 import hashlib
+import json
 import pathlib
 import re
 import subprocess
@@ -17,6 +18,7 @@ IMAGES = {".png", ".jpg", ".jpeg"}
 PAIRS = ("euroc", "kitti")  # data sets of stereo cameras
 PREFIX = "rgbd_dataset_"  # of the folders of TUM RGB-D
 FRAMES = 300  # of a sequence of the suite, unless --frames says otherwise
+RENDERING_DIGITS = 12  # of the hash in the name of a rendering
 LISTING_FRAMES = "2"  # enough to learn which sequences there are
 
 
@@ -293,25 +295,63 @@ def read_suite(content, paper_sequences, frames):
 
 # ---- sequences of the cases of the gate
 
-
-def rendering_folder(case, seed, renderings):
-    """Where what a case needs is rendered: alone, unless the whole suite is there."""
-    whole = renderings / f"suite-{seed}"
-    is_whole = case.source == "suite" and whole.is_dir()
-    return whole if is_whole else renderings / f"{case.sequence}-{seed}"
+RENDERER_SOURCES = "tools/synthetic"  # of a checkout
+PROBE = ["--scene", "desk", "--frames", "2", "--seed", "0", "--fisheye", "150", "--stereo", "0.12",
+         "--readout-time", "0.02", "--quiet"]
 
 
-def needed_renderings(definitions, cases, renderings):
-    """{folder: options} of the renderings of the cases that are not there."""
-    found = {}
-    for case in cases:
-        for seed in case.seeds if case.source != "recorded" else ():
-            folder = rendering_folder(case, seed, renderings)
-            options = ["--suite", str(folder), "--only", case.sequence] \
-                if case.source == "suite" else [str(folder), *definitions.renderings[case.sequence]]
-            if not folder.exists():
-                found[folder] = [*options, "--seed", str(seed), "--quiet"]
-    return found
+def probe_hash(program):
+    """The hash of all files of a very short rendering, which feels the camera models, too. Figures of
+    rendered scenes can only be made again by a renderer with the same one."""
+    with tempfile.TemporaryDirectory() as folder:
+        target = pathlib.Path(folder) / "probe"
+        call_renderer(program, [str(target), *PROBE])
+        return hash_masks(target)
+
+
+def renderer_hash(program):
+    """A hash of the probe and of the sources of a make_synthetic in the build folder of a checkout,
+    which must not be newer than the program; without sources, of the program itself."""
+    folders = program.resolve().parents
+    top = folders[3] if len(folders) > 3 else folders[0]
+    sources = sorted((top / RENDERER_SOURCES).glob("*.cc")) + sorted((top / RENDERER_SOURCES).glob("*.h"))
+    newest = max(sources, key=lambda path: path.stat().st_mtime, default=program)
+    if newest.stat().st_mtime > program.stat().st_mtime:
+        raise InputError(f"{program}: is older than {newest}; build it (cmake --build --preset release)")
+    lines = [f"{path.name}\0{hash_file(path)}\n" for path in sources or [program]]
+    return hashlib.sha256("".join([*lines, probe_hash(program)]).encode()).hexdigest()
+
+
+class Renderings:
+    """The rendered sequences of the gate below a folder. The name of each ends with a hash of the
+    renderer and of its options, so another renderer or other options never use it."""
+
+    def __init__(self, folder, program, definitions):
+        self.folder, self.program, self.definitions = folder, program, definitions
+        self.renderer = None
+
+    def options(self, case, seed):
+        """The options of make_synthetic, without the folder."""
+        scene = ["--only", case.sequence] if case.source == "suite" \
+            else self.definitions.renderings[case.sequence]
+        return [*scene, "--seed", str(seed), "--quiet"]
+
+    def path(self, case, seed):
+        self.renderer = self.renderer or renderer_hash(self.program)
+        key = json.dumps([self.renderer, case.source, self.options(case, seed)])
+        return self.folder / (f"{case.sequence}-{seed}-"
+                              f"{hashlib.sha256(key.encode()).hexdigest()[:RENDERING_DIGITS]}")
+
+    def missing(self, cases):
+        """{folder: options} of the renderings of the cases that are not there."""
+        found = {}
+        for case in cases:
+            for seed in case.seeds if case.source != "recorded" else ():
+                folder = self.path(case, seed)
+                if not folder.exists():
+                    target = ["--suite", str(folder)] if case.source == "suite" else [str(folder)]
+                    found[folder] = [*target, *self.options(case, seed)]
+        return found
 
 
 def find_sequence(case, seed, data, renderings, config):
@@ -319,7 +359,7 @@ def find_sequence(case, seed, data, renderings, config):
     if case.source == "recorded":
         folder = data / case.sequence
         return read_sequence(str(folder), None, {}, config) if folder.is_dir() else None
-    top, name = rendering_folder(case, seed, renderings), f"{case.sequence}-{seed}"
+    top, name = renderings.path(case, seed), f"{case.sequence}-{seed}"
     if case.source == "rendering":
         return dataclasses.replace(read_sequence(str(top), None, {}, config), name=name)
     entry = next((entry for entry in read_json(top / "suite.json").get("sequences", [])

@@ -4,6 +4,8 @@
 
 import json
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -40,6 +42,18 @@ class AccuracyTest(unittest.TestCase):
         self.desk = fake_slam.write_tum(self.dir / "data" / "desk")
         self.out, self.cases = self.dir / "out", self.dir / "accuracy.yaml"
         self.cases.write_text(CASES)
+        self.git("init", "-q")
+        self.commit()
+
+    def git(self, *arguments):
+        command = ["git", "-C", self.dir, "-c", "user.name=a", "-c", "user.email=a@b", *arguments]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+    def commit(self):
+        """Commits the cases, and makes the programs those of this commit."""
+        self.git("add", self.cases)
+        self.git("commit", "-q", "--allow-empty", "-m", "cases")
+        (self.programs / "git").write_text(self.git("describe", "--always"))
 
     def arguments(self, *arguments):
         return ["--programs", self.programs, "--tools", self.programs, "--definitions", self.cases,
@@ -49,7 +63,8 @@ class AccuracyTest(unittest.TestCase):
     def run_script(self, *arguments, code=0):
         """In this process, with an accepted file of its own, so that the one of this project plays
         no part."""
-        with mock.patch.object(accuracy, "ACCEPTED", self.dir / "docs" / "accuracy.json"):
+        with mock.patch.object(accuracy, "ACCEPTED", self.dir / "docs" / "accuracy.json"), \
+                mock.patch.object(accuracy, "TOP", self.dir):
             result = run_main(accuracy.main, *self.arguments(*arguments))
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
@@ -64,6 +79,11 @@ class AccuracyTest(unittest.TestCase):
     def behave(self, *words):
         (self.programs / "behaviour").write_text(" ".join(words))
 
+    def rendered(self):
+        """The calls of make_synthetic but those for the probe."""
+        calls = (self.programs / "renderings").read_text().splitlines()
+        return [call for call in calls if "/probe " not in call]
+
     def runs(self):
         return json.loads((self.out / "accuracy.json").read_text())["runs"]
 
@@ -74,14 +94,14 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(len(calls), 2 * 2 * 2 + 1 + 2 * 2 + 2)
         self.assertIn(f"rgbd_tum {self.desk} --first 3 --last 9 --seed 3 --masks {self.desk}/masks "
                       "--quiet --output runs/desk/rgbd/objects/seed-3/out", calls)
-        room = self.dir / "renderings" / "room-2"
+        room = next((self.dir / "renderings").glob("room-2-*"))
         self.assertIn(f"mono_tum {room} --stride 6 --first 0 --seed 0 --quiet --output "
                       "runs/room-2/mono/points+sixth-6/seed-0/out", calls)
         self.assertTrue(any(f"--settings {self.desk}/camera.yaml" in call for call in calls
                             if "desk+late-5" in call))
-        self.assertTrue(any("rgbd_icl" in call and "icl0-0/icl0" in call and "--masks" in call
+        self.assertTrue(any("rgbd_icl" in call and "icl0-0-" in call and "--masks" in call
                             for call in calls))
-        self.assertEqual(len((self.programs / "renderings").read_text().splitlines()), 3)
+        self.assertEqual(len(self.rendered()), 3)
         run = self.runs()["desk/rgbd/objects/seed-3"]
         self.assertEqual((run["case"], run["mode"], run["variant"]), ("desk", "rgbd", "objects"))
         self.assertAlmostEqual(run["figures"]["ate_se3"], 0.013)
@@ -91,7 +111,50 @@ class AccuracyTest(unittest.TestCase):
         # It goes on where it was, and renders nothing twice.
         self.call_main()
         self.assertEqual(self.calls(), calls)
-        self.assertEqual(len((self.programs / "renderings").read_text().splitlines()), 3)
+        self.assertEqual(len(self.rendered()), 3)
+        # Another renderer and other options render anew, and never use what is there.
+        with (self.programs / "make_synthetic").open("a") as program:
+            program.write("# another renderer\n")
+        self.call_main("--only", "walk")
+        self.assertEqual(len(self.rendered()), 5)
+        self.cases.write_text(CASES.replace("[--scene, room]", "[--scene, room, --readout-time, 0.02]"))
+        self.call_main("--only", "walk")
+        self.assertEqual(len(self.rendered()), 7)
+
+    def test_figures_of_another_input_are_not_compared(self):
+        self.run_script("--only", "desk,suite")
+        old = self.dir / "old.json"
+        report = json.loads((self.out / "accuracy.json").read_text())
+        name = "desk/rgbd/points/seed-3"
+        report["runs"][name]["input"] = "0123"
+        old.write_text(json.dumps(report))
+        self.behave("worse")
+        self.out = self.dir / "other"
+        told = self.run_script("--only", "desk,suite", "--compare", old, code=1).stdout
+        self.assertIn(f"not compared: {name} has another input than before: ATE, mm 39.00", told)
+        self.assertNotIn(f"worse: {name}", told)
+        self.assertIn("worse: desk/rgbd/points/seed-0", told)
+        report["runs"] = {name: report["runs"][name]}
+        old.write_text(json.dumps(report))
+        self.assertIn("nothing to compare", self.run_script("--only", "desk", "--compare", old, code=2).stderr)
+
+    def test_only_figures_of_a_commit_are_accepted(self):
+        self.cases.write_text(CASES + "# changed\n")
+        self.assertIn("changes that are not committed", self.call_main("--accept", code=2)[1])
+        self.assertFalse((self.programs / "calls").exists(), "known before the runs")
+        self.commit()
+        (self.programs / "git").write_text("abc1234")
+        self.assertIn("the runs are of abc1234, and", self.call_main("--accept", code=2)[1])
+        self.assertFalse((self.dir / "docs").exists())
+        self.out = self.dir / "again"
+        self.commit()
+        self.call_main("--accept")
+        report = json.loads((self.dir / "docs" / "accuracy.json").read_text())
+        self.assertEqual(report["git"], [self.git("describe", "--always")])
+        self.assertRegex(report["rendering"], "^[0-9a-f]{64}$")
+        elsewhere = fake_slam.write_programs(self.dir.parent / f"{self.dir.name}-bin")
+        self.addCleanup(shutil.rmtree, elsewhere)
+        self.assertIn("is not a program of", self.call_main("--accept", "--tools", elsewhere, code=2)[1])
 
     def test_accepted_figures_and_worse_ones(self):
         self.call_main("--accept")
@@ -136,7 +199,8 @@ class AccuracyTest(unittest.TestCase):
         self.behave("worse")
         self.out = self.dir / "other"
         result = self.run_script("--only", "suite", "--compare", old, code=1)
-        self.assertIn("abc1234: 40 frames in 2 runs, 0 without a pose, 0 with a wrong one",
+        build = self.git("describe", "--always")
+        self.assertIn(f"{build}: 40 frames in 2 runs, 0 without a pose, 0 with a wrong one",
                       result.stdout)
         old.write_text(json.dumps({"version": 1, "git": [], "runs": {}}))
         self.assertIn("no run is in both", self.run_script("--only", "suite", "--compare", old,

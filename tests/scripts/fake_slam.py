@@ -52,7 +52,7 @@ if "--masks" in arguments and "objects.enabled=false" not in arguments:
 (out / "summary.json").write_text(json.dumps({
     "trajectory": {"ate_rmse_m": error, "tracked": 0 if lost else 20, "frames": 20},
     "objects": objects, "map": {"keyframes": 5, "loops": 0},
-    "provenance": {"git": "abc1234", "preset": value("--preset"), "settings_hash": "0",
+    "provenance": {"git": (here / "git").read_text() if (here / "git").exists() else "abc1234", "preset": value("--preset"), "settings_hash": "0",
                    "interrupted": False}}))
 if lost:
     print("error: no map could be made from 20 frames", file=sys.stderr)
