@@ -8,6 +8,10 @@ occur exactly once in `file`. `test` is the test program with its arguments; if 
 that of the module: objects_tests for src/objects/fusion.cc. It must pass without a defect. A defect
 counts as caught if the tests fail, crash or run too long.
 
+With --sample N, N of the defects are drawn at random. The seed is printed; without --seed it follows
+from the commit, so that other commits try other defects and a run can be repeated. All of them take
+hours: one compilation, one link and one run of the module's tests each.
+
 The user's tree is never changed. The copy is in a temporary folder, which is removed at the end, or
 in --work DIR, which is kept: its build makes the next run faster. Only files that git knows are
 copied, with their uncommitted changes.
@@ -20,6 +24,7 @@ import argparse
 import json
 import os
 import pathlib
+import random
 import shlex
 import shutil
 import subprocess
@@ -53,6 +58,19 @@ def read_defects(path, names):
     if unknown:
         raise InputError(f"{path}: no defect {', '.join(unknown)}")
     return [entry for entry in entries if not names or entry["name"] in names]
+
+
+def seed_of_commit(top):
+    """A number that follows from the commit of the tree."""
+    head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=top, check=True, capture_output=True,
+                          text=True).stdout
+    return int(head[:8], 16)
+
+
+def draw(entries, count, seed):
+    """`count` of the entries, in the order of the list."""
+    chosen = random.Random(seed).sample(range(len(entries)), min(count, len(entries)))
+    return [entries[i] for i in sorted(chosen)]
 
 
 def command_of(entry):
@@ -182,6 +200,10 @@ def main(words=None):
                         help="build nothing, only check that all defects apply to the tree")
     parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
                         help="folder for the copy, which is kept")
+    parser.add_argument("--sample", type=int, metavar="N",
+                        help="plant only N defects, drawn at random (default: all)")
+    parser.add_argument("--seed", type=int, metavar="SEED",
+                        help="of --sample (default: a number that follows from the commit)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N",
                         help="parallel compilations (default: one per processor)")
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S",
@@ -195,6 +217,13 @@ def main(words=None):
             faults = list(check_applies(entries, arguments.tree))
             print("\n".join([*faults, f"{len(entries)} defects, {len(faults)} do not apply"]))
             return 1 if faults else 0
+        if arguments.sample is not None:
+            if arguments.sample < 1:
+                raise InputError(f"--sample: {arguments.sample}: expected at least 1")
+            seed = seed_of_commit(arguments.tree) if arguments.seed is None else arguments.seed
+            listed = len(entries)
+            entries = draw(entries, arguments.sample, seed)
+            print(f"{len(entries)} of {listed} defects, --seed {seed}", flush=True)
         if arguments.work is None:
             temporary = tempfile.TemporaryDirectory(prefix="plant_defects_")
         copy = arguments.work.resolve() if arguments.work else pathlib.Path(temporary.name) / "copy"

@@ -84,6 +84,38 @@ class PlantDefectsTest(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("no defect none", result.stderr)
 
+    def test_a_sample_follows_from_its_seed(self):
+        (self.tree / "test_body").write_text("grep -q 'limit = 3' src/objects/a.cc")
+        entries = [entry(f"defect {i}", "limit = 3", f"limit = {i}") for i in range(4, 24)]
+
+        def names(*arguments):
+            result = self.plant(entries, *arguments)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return [line for line in result.stdout.splitlines() if line.endswith(" caught")
+                    and line.startswith("defect ")], result.stdout
+
+        first, printed = names("--sample", "3", "--seed", "7")
+        self.assertEqual(len(first), 3)
+        self.assertTrue(printed.startswith("3 of 20 defects, --seed 7\n"))
+        self.assertEqual(names("--sample", "3", "--seed", "7")[0], first)
+        drawn = {tuple(names("--sample", "3", "--seed", str(seed))[0]) for seed in range(4)}
+        self.assertGreater(len(drawn), 1)
+        self.assertEqual(len(names("--sample", "99", "--seed", "0")[0]), 20)
+        self.assertEqual(self.plant(entries, "--sample", "0").returncode, 2)
+
+    def test_without_a_seed_it_follows_from_the_commit(self):
+        def commit(text):
+            self.source.write_text(text)
+            git = ["git", "-C", self.tree, "-c", "user.name=a", "-c", "user.email=a@b"]
+            subprocess.run([*git, "add", "."], check=True)
+            subprocess.run([*git, "commit", "-qm", text], check=True)
+            return plant_defects.seed_of_commit(self.tree)
+
+        seed = commit("limit = 3\n")
+        result = self.plant([CAUGHT], "--sample", "1")
+        self.assertIn(f"1 of 1 defects, --seed {seed}\n", result.stdout)
+        self.assertNotEqual(commit("limit = 3 \n"), seed)
+
     def test_defects_that_do_not_apply_or_compile(self):
         entries = [entry("absent", "limit = 9", "y"), entry("twice", "x", "y"),
                    entry("no file", "x", "y", file="src/objects/none.cc"),
