@@ -53,6 +53,19 @@ TEST(FitDepth, ForegroundAndBackgroundAreNotMixed) {
   EXPECT_EQ(fitted.at<uint16_t>(60, 80), 1000);
 }
 
+// The limit is 5 % from pixel to pixel: less is a slant, more is the border of a thing.
+TEST(FitDepth, ASlantIsMixedUpToFivePercent) {
+  const auto fit_step = [](uint16_t farther) {
+    cv::Mat depth(12, 16, CV_16UC1, cv::Scalar(10000));
+    depth.colRange(8, 16).setTo(farther);
+    const cv::Mat fitted = FitDepth(depth, {160, 120});
+    return 160 * 120 - cv::countNonZero(fitted == 10000) - cv::countNonZero(fitted == farther);
+  };
+  EXPECT_EQ(fit_step(10490), 10 * 120) << "the pixels between the centres of both columns";
+  EXPECT_EQ(fit_step(10510), 0);
+  EXPECT_EQ(fit_step(12000), 0);
+}
+
 TEST(FitDepth, UnknownStaysUnknownAndDoesNotSpread) {
   cv::Mat depth(12, 16, CV_32FC1, cv::Scalar(2.0F));
   depth.at<float>(5, 5) = 0.0F;

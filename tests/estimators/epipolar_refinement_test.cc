@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/fisheye_camera.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -173,6 +173,44 @@ std::vector<PixelPair> SeeThroughFisheye(uint64_t seed) {
     }
   }
   return pairs;
+}
+
+class SampsonErrorOf : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(SampsonErrorOf);
+
+// Sampson's error is the square of the epipolar error over its variance, to first order in the
+// errors of all four coordinates. Those are errors of the pixels in which distances are measured.
+TEST_P(SampsonErrorOf, APairIsItsEpipolarErrorInStandardDeviations) {
+  const Sensor& sensor = GetParam().sensor;
+  const auto ray = [&](const Eigen::Vector2d& pixel) {
+    return sensor.camera.Unproject(FromGrid(sensor, pixel), 1.0);
+  };
+  const Rigid3 motion = TrueMotion();
+  const auto epipolar = [&](const Eigen::Vector4d& pixels) {
+    return ray(pixels.tail<2>())
+        .dot(motion.translation.cross(motion.rotation * ray(pixels.head<2>())));
+  };
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> u(60.0, 580.0);
+  std::uniform_real_distribution<double> v(40.0, 440.0);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector4d pixels(u(random), v(random), u(random), v(random));
+    const Eigen::Vector4d sigmas(0.4, 0.4, 1.1, 1.1);
+    double variance = 0.0;
+    for (int axis = 0; axis < 4; ++axis) {
+      const Eigen::Vector4d step = 1e-3 * Eigen::Vector4d::Unit(axis);
+      const double slope = (epipolar(pixels + step) - epipolar(pixels - step)) / 2e-3;
+      variance += std::pow(sigmas[axis] * slope, 2);
+    }
+    const double error = SampsonError(sensor.camera, motion,
+                                      {.a = FromGrid(sensor, pixels.head<2>()),
+                                       .b = FromGrid(sensor, pixels.tail<2>()),
+                                       .sigma_a = sigmas[0],
+                                       .sigma_b = sigmas[2]});
+    const double expected = std::pow(epipolar(pixels), 2) / variance;
+    EXPECT_NEAR(error, expected, 1e-4 * expected) << pixels.transpose();
+  }
 }
 
 // With the errors of the raw pixels, Sampson's error has one degree of freedom at every angle.

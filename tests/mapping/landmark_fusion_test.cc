@@ -7,6 +7,7 @@
 
 #include "map/invariants.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 #include "support/unknown_points.h"
 
 namespace hullslam {
@@ -17,7 +18,7 @@ bool Observes(const Map& map, KeyframeId keyframe, LandmarkId landmark) {
   return std::find(slots.begin(), slots.end(), landmark) != slots.end();
 }
 
-class LandmarkFusionTest : public testing::Test {
+class LandmarkFusionTest : public testing::TestWithParam<TestCamera> {
  protected:
   // Every third of the landmarks that all three keyframes see with depth.
   std::vector<LandmarkId> Victims() const {
@@ -52,18 +53,20 @@ class LandmarkFusionTest : public testing::Test {
     EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
   }
 
-  const SyntheticWorld world_;
+  const SyntheticWorld world_{{}, GetParam().sensor};
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5, 10});
   const KeyframeId newest_{2};
 };
 
-TEST_F(LandmarkFusionTest, DoesNotChangeAMapWithoutDuplicates) {
+HULLSLAM_WITH_ALL_CAMERAS(LandmarkFusionTest);
+
+TEST_P(LandmarkFusionTest, DoesNotChangeAMapWithoutDuplicates) {
   const size_t landmarks = made_.map.landmarks().size();
   Fuse(newest_);
   EXPECT_EQ(made_.map.landmarks().size(), landmarks);
 }
 
-TEST_F(LandmarkFusionTest, MergesDuplicatesOfTheKeyframe) {
+TEST_P(LandmarkFusionTest, MergesDuplicatesOfTheKeyframe) {
   const size_t landmarks = made_.map.landmarks().size();
   std::vector<std::pair<LandmarkId, LandmarkId>> twins;
   for (const LandmarkId victim : Victims()) {
@@ -79,7 +82,7 @@ TEST_F(LandmarkFusionTest, MergesDuplicatesOfTheKeyframe) {
   }
 }
 
-TEST_F(LandmarkFusionTest, MergesDuplicatesInANeighbour) {
+TEST_P(LandmarkFusionTest, MergesDuplicatesInANeighbour) {
   std::vector<std::pair<LandmarkId, LandmarkId>> twins;
   for (const LandmarkId victim : Victims()) {
     twins.emplace_back(victim, Split(victim, KeyframeId(0), {0.001, -0.001, 0.002}));
@@ -91,7 +94,7 @@ TEST_F(LandmarkFusionTest, MergesDuplicatesInANeighbour) {
   }
 }
 
-TEST_F(LandmarkFusionTest, AddsObservationsAtFreeKeypoints) {
+TEST_P(LandmarkFusionTest, AddsObservationsAtFreeKeypoints) {
   const std::vector<LandmarkId> victims = Victims();
   for (const LandmarkId victim : victims) {
     Forget(victim, newest_);
@@ -107,7 +110,7 @@ TEST_F(LandmarkFusionTest, AddsObservationsAtFreeKeypoints) {
       << "the edges are updated";
 }
 
-TEST_F(LandmarkFusionTest, DoesNotMergePointsWithDifferentDescriptors) {
+TEST_P(LandmarkFusionTest, DoesNotMergePointsWithDifferentDescriptors) {
   std::vector<std::pair<LandmarkId, LandmarkId>> neighbours;
   for (const LandmarkId victim : Victims()) {
     const LandmarkId twin = Split(victim, newest_, Eigen::Vector3d::Zero());
@@ -130,14 +133,17 @@ TEST_F(LandmarkFusionTest, DoesNotMergePointsWithDifferentDescriptors) {
   }
 }
 
-TEST_F(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
+TEST_P(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
   std::vector<LandmarkId> twins;
   for (const LandmarkId victim : Victims()) {
     const Landmark& landmark = made_.map.landmarks().At(victim);
     const double depth = (made_.map.CamFromWorld(newest_) * landmark.position).z();
-    // 50 px left or right of the keypoints, outside of every search window.
-    made_.map.SetPosition(victim, landmark.position + Eigen::Vector3d(0.0, 0.1 * depth, 0.0));
-    twins.push_back(Split(victim, newest_, {0.0, -0.2 * depth, 0.0}));
+    // Above or below the keypoints, outside of every search window: 50 px, 40 or more in the raw
+    // image of the fisheye.
+    const double shift =
+        50.0 / world_.sensor().camera.fy * depth * (world_.sensor().camera.IsFisheye() ? 2.5 : 1.0);
+    made_.map.SetPosition(victim, landmark.position + Eigen::Vector3d(0.0, shift, 0.0));
+    twins.push_back(Split(victim, newest_, {0.0, -2.0 * shift, 0.0}));
   }
   Fuse(newest_);
   for (const LandmarkId twin : twins) {
@@ -147,8 +153,12 @@ TEST_F(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
 
 // Near each keypoint of the third keyframe there is another one with a more similar descriptor, but
 // too far away to be the landmark.
-TEST(LandmarkFusion, TakesTheMostSimilarKeypointThatAgreesWithTheProjection) {
-  const SyntheticWorld world;
+class LandmarkFusionWith : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(LandmarkFusionWith);
+
+TEST_P(LandmarkFusionWith, TakesTheMostSimilarKeypointThatAgreesWithTheProjection) {
+  const SyntheticWorld world({}, GetParam().sensor);
   const KeyframeId newest(2);
   SyntheticMap made = MakeSyntheticMap(world, {0, 5, 10}, [&](Frame& frame, const Rigid3&) {
     FrameFeatures& features = frame.features;
@@ -156,12 +166,16 @@ TEST(LandmarkFusion, TakesTheMostSimilarKeypointThatAgreesWithTheProjection) {
     for (size_t i = 0; i < count; ++i) {
       Keypoint decoy = features.keypoints[i];
       const float shift = 2.8f * world.sensor().levels.scale[static_cast<size_t>(decoy.level)];
-      decoy.undistorted += Eigen::Vector2f(shift, shift);
+      const Eigen::Vector2d pixel = world.sensor().ToGrid(decoy.undistorted.cast<double>());
+      decoy.undistorted =
+          FromGrid(world.sensor(), pixel + Eigen::Vector2d::Constant(static_cast<double>(shift)))
+              .cast<float>();
       const float right_u = features.right_u[i];
       features.keypoints.push_back(decoy);
       features.descriptors.push_back(features.descriptors[i]);
       features.depth.push_back(features.depth[i]);
-      features.right_u.push_back(right_u < 0.0f ? right_u : right_u + shift);
+      const bool keeps_column = right_u < 0.0f || world.sensor().camera.IsFisheye();
+      features.right_u.push_back(keeps_column ? right_u : right_u + shift);
       features.descriptors[i][0] ^= 0xfffff;  // 20 bits
     }
     RebuildGrid(world.sensor(), frame);

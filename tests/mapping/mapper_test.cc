@@ -16,6 +16,7 @@
 #include "map/invariants.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 #include "system/finish_run.h"
 
 namespace hullslam {
@@ -24,8 +25,9 @@ namespace {
 // Sends keyframes of the synthetic world to a mapper, like a tracker that finds the true poses.
 class MapperTest : public testing::Test {
  protected:
-  explicit MapperTest(const SyntheticWorldOptions& world = {.points = 400, .pixel_noise = 0.1})
-      : world_(world) {}
+  explicit MapperTest(const SyntheticWorldOptions& world = {.points = 400, .pixel_noise = 0.1},
+                      const Sensor& sensor = SyntheticSensor())
+      : world_(world, sensor) {}
 
   void SetUp() override { Restart({}); }
 
@@ -114,6 +116,13 @@ class MapperTest : public testing::Test {
   std::map<uint32_t, LandmarkId> landmark_of_point_;
 };
 
+class MapperWith : public MapperTest, public testing::WithParamInterface<TestCamera> {
+ protected:
+  MapperWith() : MapperTest({.points = 400, .pixel_noise = 0.1}, GetParam().sensor) {}
+};
+
+HULLSLAM_WITH_ALL_CAMERAS(MapperWith);
+
 TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
   ProcessFrame(0);
   ASSERT_EQ(published_.size(), 2u);
@@ -123,7 +132,7 @@ TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
   EXPECT_EQ(published_.size(), 4u);
 }
 
-TEST_F(MapperTest, BuildsAConsistentMapNearTheTruth) {
+TEST_P(MapperWith, BuildsAConsistentMapNearTheTruth) {
   for (uint32_t index = 0; index <= 60; index += 5) {
     ProcessFrame(index);
   }
@@ -138,7 +147,7 @@ TEST_F(MapperTest, BuildsAConsistentMapNearTheTruth) {
 }
 
 // Points from number `left` on vanish, and depth images show a wall behind all that is there.
-TEST_F(MapperTest, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
+TEST_P(MapperWith, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);
   }
@@ -149,7 +158,7 @@ TEST_F(MapperTest, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
   };
   const auto before = gone_points();
   ASSERT_GT(before, 100);
-  const SyntheticWorld emptied({.points = kLeft, .pixel_noise = 0.1});
+  const SyntheticWorld emptied({.points = kLeft, .pixel_noise = 0.1}, world_.sensor());
   const cv::Mat wall(480, 640, CV_16UC1, cv::Scalar(30000));
   for (uint32_t index = 25; index <= 40; index += 5) {
     const SyntheticView view = emptied.Observe(index);
@@ -170,7 +179,7 @@ TEST_F(MapperTest, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
   EXPECT_GT(landmark_of_point_.size(), 100U) << "what is still there stays";
 }
 
-TEST_F(MapperTest, BundleAdjustmentCorrectsAWrongPose) {
+TEST_P(MapperWith, BundleAdjustmentCorrectsAWrongPose) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);
   }
@@ -579,12 +588,14 @@ TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {
   EXPECT_TRUE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
 
-class MapperWithoutMuchDepthTest : public MapperTest {
+class MapperWithoutMuchDepth : public MapperTest, public testing::WithParamInterface<TestCamera> {
  protected:
-  MapperWithoutMuchDepthTest() : MapperTest({.points = 600, .depth_share = 0.3}) {}
+  MapperWithoutMuchDepth() : MapperTest({.points = 600, .depth_share = 0.3}, GetParam().sensor) {}
 };
 
-TEST_F(MapperWithoutMuchDepthTest, PointsWithoutDepthAreTriangulated) {
+HULLSLAM_WITH_ALL_CAMERAS(MapperWithoutMuchDepth);
+
+TEST_P(MapperWithoutMuchDepth, PointsWithoutDepthAreTriangulated) {
   for (uint32_t index = 0; index <= 50; index += 5) {
     ProcessFrame(index);
   }

@@ -9,6 +9,7 @@
 #include "hullslam/util/check.h"
 #include "matching/made_features.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -155,16 +156,23 @@ TEST(MatchByProjection, RotationIsComparedOnlyOnRequest) {
   }
 }
 
-TEST(MatchByProjection, FindsEveryPointOfTheWorldAtItsProjection) {
-  const SyntheticWorld world({.pixel_noise = 0.5, .flipped_bits = 10});
+class MatchByProjectionWith : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(MatchByProjectionWith);
+
+TEST_P(MatchByProjectionWith, FindsEveryPointOfTheWorldAtItsProjection) {
+  const SyntheticWorld world({.pixel_noise = 0.5, .flipped_bits = 10}, GetParam().sensor);
+  const Sensor& sensor = world.sensor();
   const SyntheticView view = world.Observe(10);
   const FrameFeatures& features = view.frame->features;
   std::vector<Projection> projections;
   for (uint32_t point = 0; point < world.points().size(); ++point) {
     const Eigen::Vector3d in_cam = SyntheticWorld::CamFromWorld(10) * world.points()[point];
     Projection projection = At(0.0f, 0.0f);
-    projection.pixel = world.sensor().camera.Project(in_cam).cast<float>();
-    projection.right_u = projection.pixel.x() - 40.0f / static_cast<float>(in_cam.z());
+    const Eigen::Vector2d pixel = sensor.camera.Project(in_cam);
+    projection.pixel = sensor.ToGrid(pixel).cast<float>();
+    projection.right_u =
+        static_cast<float>(sensor.camera.FarRight(pixel.x()) - sensor.camera.bf / in_cam.z());
     projection.descriptor = world.descriptor(point);
     projection.radius = 15.0f;
     projections.push_back(projection);

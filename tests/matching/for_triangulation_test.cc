@@ -8,8 +8,8 @@
 
 #include "geometry/epipolar.h"
 #include "matching/made_features.h"
-#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -113,15 +113,22 @@ TEST(MatchForTriangulation, WithoutABaselineThereAreNoMatches) {
   EXPECT_TRUE(MatchAll(features, features, Eigen::Matrix3d::Zero()).empty());
 }
 
-TEST(MatchForTriangulation, FindsAllAndOnlyTrueMatchesInTwoViews) {
-  const SyntheticWorld world({.depth_share = 0.0, .flipped_bits = 10});
+class MatchForTriangulationWith : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(MatchForTriangulationWith);
+
+TEST_P(MatchForTriangulationWith, FindsAllAndOnlyTrueMatchesInTwoViews) {
+  const SyntheticWorld world({.pixel_noise = 0.7, .depth_share = 0.0, .flipped_bits = 10},
+                             GetParam().sensor);
+  const PinholeCamera& camera = world.sensor().camera;
   const SyntheticView a = world.Observe(0);
   const SyntheticView b = world.Observe(20);
-  const Eigen::Matrix3d k = world.sensor().camera.Matrix();
+  const Eigen::Matrix3d k = camera.Matrix();
   const Rigid3 b_from_a =
       SyntheticWorld::CamFromWorld(20) * Inverse(SyntheticWorld::CamFromWorld(0));
   const auto matches =
-      MatchAll(a.frame->features, b.frame->features, FundamentalFromPose(b_from_a, k, k));
+      MatchAll(a.frame->features, b.frame->features, FundamentalFromPose(b_from_a, k, k),
+               kFarEpipole, {.lens = camera.IsFisheye() ? &camera : nullptr});
   EXPECT_GT(matches.size(), 200u);
   for (const Match& match : matches) {
     EXPECT_EQ(a.points[match.query], b.points[match.keypoint]);

@@ -11,6 +11,7 @@
 #include "geometry/convex_hull.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -107,6 +108,35 @@ TEST(MeasureMisfit, LeavesOutOneSidedLines) {
   ObjectLandmark landmark;
   landmark.ellipsoid = object.ellipsoid;
   EXPECT_NEAR(MeasureSpread(sensor.camera, landmark, observations, {}).plain_px, 0.0, 1e-6);
+}
+
+class SpreadWith : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(SpreadWith);
+
+// The distance of a line from the object is that in the image as read.
+TEST_P(SpreadWith, ALineThatIsMovedInTheImageAsReadHasThisSpread) {
+  constexpr double kMove = 0.2;  // px
+  const Sensor& sensor = GetParam().sensor;
+  const PinholeCamera& camera = sensor.camera;
+  const MadeObject object = MakeObject("cup", {0.9, 0.4, 1.0}, {0.05, 0.06, 0.07}, 0.5);
+  Detection detection = Detect(object, sensor, Rigid3());
+  const Ellipse ellipse = ProjectEllipsoid(camera.Matrix(), Rigid3(), object.ellipsoid).value();
+  for (SilhouetteLine& line : detection.lines) {
+    const Eigen::Vector2d normal = line.line.normal;
+    const Eigen::Vector2d touching =
+        ellipse.center + ellipse.shape * normal / ellipse.HalfExtent(normal);
+    const Eigen::Vector2d along = 1e-3 * Eigen::Vector2d(-normal.y(), normal.x());
+    const Eigen::Vector2d side = sensor.ToGrid(touching + along) - sensor.ToGrid(touching - along);
+    const Eigen::Vector2d outwards =
+        (sensor.ToGrid(touching + 1e-3 * normal) - sensor.ToGrid(touching)) / 1e-3;
+    const double share = std::abs(outwards.dot(Eigen::Vector2d(-side.y(), side.x()).normalized()));
+    line.line.offset -= kMove / share;
+  }
+  ObjectLandmark landmark;
+  landmark.ellipsoid = object.ellipsoid;
+  const std::vector<ResolvedObservation> observations = {{KeyframeId(0), Rigid3(), &detection}};
+  EXPECT_NEAR(MeasureSpread(camera, landmark, observations).plain_px, kMove, 0.02 * kMove);
 }
 
 // Compensation relies on this law: the excess of a box over an ellipsoid that some observations

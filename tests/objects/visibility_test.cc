@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "objects/made_objects.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -129,6 +132,44 @@ TEST_F(Visibility, IsNotExpectedBehindANearerObject) {
   box.world_from_object.translation = {0.0, 0.0, 0.98};  // not nearer as a whole
   SetMapped(other, box);
   EXPECT_TRUE(Shows(keyframe));
+}
+
+class VisibilityWith : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(VisibilityWith);
+
+// A ball whose image reaches far to the right, where the image of a fisheye bends its box. Only the
+// depths near its right end are known. They are either before it or behind it.
+TEST_P(VisibilityWith, TheDepthsOnAWideObjectAreFoundAtItsEnds) {
+  const Sensor& sensor = GetParam().sensor;
+  const PinholeCamera& camera = sensor.camera;
+  const Eigen::Vector3d border =
+      camera.Unproject(camera.Undistort({0.85 * camera.width, camera.cy}), 1.0);
+  Ellipsoid ball;
+  ball.world_from_object.translation = {0.0, 0.0, 3.0};
+  ball.half_axes.setConstant(3.0 * std::sin(std::atan(border.x())));
+  const Ellipse ellipse = ProjectEllipsoid(camera.Matrix(), Rigid3(), ball).value();
+  const double right = ellipse.center.x() + 0.9 * ellipse.HalfExtent(Eigen::Vector2d::UnitX());
+  Map map;
+  const ObjectId id = map.AddObject();
+  map.AddObservation(id, AddObserver(map, sensor, Rigid3(), {{"ball", ball}}), 0);
+  map.MutableObject(id).ellipsoid = ball;
+  const auto visibility = [&](int millimetres) {
+    cv::Mat depth(camera.height, camera.width, CV_16UC1, cv::Scalar(0));
+    for (int y = 0; y < depth.rows; ++y) {
+      for (int x = 0; x < depth.cols; ++x) {
+        if (camera.Undistort(Eigen::Vector2d(x, y)).x() > right) {
+          depth.at<uint16_t>(y, x) = static_cast<uint16_t>(millimetres);
+        }
+      }
+    }
+    auto frame = std::make_shared<Frame>();
+    frame->depth = DepthGrid(depth, 1000.0);
+    const KeyframeId keyframe = map.AddKeyframe(std::move(frame), Rigid3());
+    return FindVisibility(map, sensor, keyframe, map.objects().At(id), {}, 0.0);
+  };
+  EXPECT_EQ(visibility(50), LocationVisibility::kHidden);
+  EXPECT_EQ(visibility(9000), LocationVisibility::kVisible);
 }
 
 class SeeingThrough : public Visibility {

@@ -22,6 +22,25 @@ TEST(Letterbox, PointsGoBackToTheImage) {
   EXPECT_TRUE(box.ToImage(box.offset).isApprox(Eigen::Array2d(0.0, 0.0)));
 }
 
+// YOLO's training puts the smaller half of an odd border on the left and at the top.
+TEST(Letterbox, OfAnOddBorderTheSmallerHalfComesFirst) {
+  const auto expect = [](const cv::Size& image, const Eigen::Array2d& offset) {
+    const Letterbox box = FitLetterbox(image, {64, 64});
+    EXPECT_TRUE((box.offset == offset).all()) << box.offset.transpose();
+    const cv::Mat input = MakeInput(cv::Mat(image, CV_8UC1, cv::Scalar(255)), box);
+    for (int row = 0; row < 64; ++row) {
+      for (int column = 0; column < 64; ++column) {
+        const cv::Rect inside({static_cast<int>(offset.x()), static_cast<int>(offset.y())}, image);
+        EXPECT_FLOAT_EQ(input.ptr<float>(0, 1, row)[column],
+                        inside.contains({column, row}) ? 1.0F : 114.0F / 255.0F)
+            << column << ", " << row;
+      }
+    }
+  };
+  expect({64, 37}, {0.0, 13.0});  // 13 rows above and 14 below
+  expect({37, 64}, {13.0, 0.0});
+}
+
 TEST(Letterbox, TheInputHasRedFirstAndGreyBorders) {
   const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 51, 255));  // blue, green, red
   const Letterbox box = FitLetterbox(image.size(), {64, 64});

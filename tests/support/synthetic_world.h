@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame/keypoint_grid.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
@@ -36,7 +37,8 @@ inline Sensor SyntheticSensor() {
 
 struct SyntheticWorldOptions {
   int points = 600;
-  // px, standard deviation of u and v at level 0, and of the disparity at every level.
+  // px, standard deviation of u and v at level 0, in the raw image of a fisheye lens, and of the
+  // disparity at every level.
   double pixel_noise = 0.0;
   double depth_share = 1.0;  // share of the points that have a depth in every frame that sees them
   int flipped_bits = 0;      // flipped bits of each descriptor; every frame flips other bits
@@ -58,8 +60,9 @@ struct SyntheticView {
 // The same options give the same bits.
 class SyntheticWorld {
  public:
-  explicit SyntheticWorld(const SyntheticWorldOptions& options = {})
-      : options_(options), sensor_(SyntheticSensor()) {
+  explicit SyntheticWorld(const SyntheticWorldOptions& options = {},
+                          const Sensor& sensor = SyntheticSensor())
+      : options_(options), sensor_(sensor) {
     sensor_.readout_time = options.readout_time;
     sensor_.readout_direction = options.readout_direction;
     std::mt19937_64 random(HashSeed(options.seed, 0, "points"));
@@ -129,21 +132,19 @@ class SyntheticWorld {
     for (uint32_t i = 0; i < points_.size(); ++i) {
       Eigen::Vector3d point_in_cam = cam_from_world_at(0.0) * points_[i];
       for (int k = 0; sensor_.readout_time != 0.0 && k < 10; ++k) {
-        const Eigen::Vector2d pixel = sensor_.camera.Project(point_in_cam);
+        const Eigen::Vector2d pixel = sensor_.ToGrid(sensor_.camera.Project(point_in_cam));
         const double place = sensor_.readout_direction == ReadoutDirection::kRows
                                  ? pixel.y() / sensor_.camera.height
                                  : pixel.x() / sensor_.camera.width;
         point_in_cam = cam_from_world_at(std::clamp(place - 0.5, -0.5, 0.5)) * points_[i];
       }
-      if (point_in_cam.z() > 0.1 && sensor_.bounds.Contains(sensor_.camera.Project(point_in_cam))) {
+      if (point_in_cam.z() > 0.1 && sensor_.Sees(sensor_.camera.Project(point_in_cam))) {
         AddKeypoint(patches_[i], point_in_cam, random, frame->features);
         points.push_back(i);
       }
     }
-    const PinholeCamera::Bounds& bounds = sensor_.bounds;
-    frame->features.grid = FeatureGrid(frame->features.keypoints,
-                                       Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-                                       Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+    frame->features.grid =
+        MakeKeypointGrid(frame->features.keypoints, sensor_.camera, sensor_.bounds);
     return {std::move(frame), std::move(points)};
   }
 
@@ -160,11 +161,15 @@ class SyntheticWorld {
     std::normal_distribution<double> normal;
     const double sigma = options_.pixel_noise *
                          static_cast<double>(sensor_.levels.scale[static_cast<size_t>(level)]);
-    Eigen::Vector2d pixel = sensor_.camera.Project(point_in_cam);
+    Eigen::Vector2d pixel = sensor_.ToGrid(sensor_.camera.Project(point_in_cam));
     pixel.x() += sigma * normal(random);
     pixel.y() += sigma * normal(random);
+    if (sensor_.camera.IsFisheye()) {
+      pixel = sensor_.camera.Undistort(pixel);
+    }
+    const double far_right = sensor_.camera.FarRight(pixel.x());
     const double right_u =
-        pixel.x() - sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
+        far_right - sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
     Keypoint& keypoint = features.keypoints.emplace_back();
     keypoint.undistorted = pixel.cast<float>();
     keypoint.angle = patch.angle;
@@ -174,10 +179,10 @@ class SyntheticWorld {
       const uint64_t bit = random() % 256;
       descriptor[bit / 64] ^= uint64_t{1} << (bit % 64);
     }
-    const bool has_depth = patch.has_depth && right_u >= 0.0 && right_u < pixel.x();
+    const bool has_depth = patch.has_depth && right_u >= 0.0 && right_u < far_right;
     features.right_u.push_back(has_depth ? static_cast<float>(right_u) : -1.0f);
     features.depth.push_back(
-        has_depth ? static_cast<float>(sensor_.camera.bf / (pixel.x() - right_u)) : 0.0f);
+        has_depth ? static_cast<float>(sensor_.camera.bf / (far_right - right_u)) : 0.0f);
   }
 
   SyntheticWorldOptions options_;

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "frame/keypoint_grid.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "util/random_seed.h"
@@ -11,10 +12,7 @@ namespace hullslam {
 
 // Builds the grid of the frame again after its keypoints were changed.
 inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
-  const PinholeCamera::Bounds& bounds = sensor.bounds;
-  frame.features.grid = FeatureGrid(frame.features.keypoints,
-                                    Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-                                    Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  frame.features.grid = MakeKeypointGrid(frame.features.keypoints, sensor.camera, sensor.bounds);
 }
 
 // Adds keypoints at a depth of 1 m that no other frame shows. If there are more than 70 of them,
@@ -30,8 +28,8 @@ inline void AddUnknownPoints(const Sensor& sensor, int count, int level, Frame& 
     keypoint.level = level;
     frame.features.descriptors.push_back({random(), random(), random(), random()});
     frame.features.depth.push_back(1.0f);
-    frame.features.right_u.push_back(keypoint.undistorted.x() -
-                                     static_cast<float>(sensor.camera.bf));
+    const double far_right = sensor.camera.FarRight(static_cast<double>(keypoint.undistorted.x()));
+    frame.features.right_u.push_back(static_cast<float>(far_right - sensor.camera.bf));
   }
   RebuildGrid(sensor, frame);
 }

@@ -10,13 +10,14 @@
 #include "objects/made_room.h"
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 #include "util/id_set.h"
 
 namespace hullslam {
 namespace {
 
 // The camera was at the pose of keyframe 0 and moved on by `motion` in the time of one frame.
-class MotionModel : public testing::Test {
+class MotionModel : public testing::TestWithParam<TestCamera> {
  protected:
   LastFrame LastFrameAtKeyframe(const Rigid3& motion) const {
     const Keyframe& keyframe = made_.map.keyframes().At(KeyframeId(0));
@@ -48,15 +49,17 @@ class MotionModel : public testing::Test {
     return {Eigen::Quaterniond::Identity(), {0.0, 0.0, -metres}};
   }
 
-  const SyntheticWorld world_;
+  const SyntheticWorld world_{{}, GetParam().sensor};
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
   TrackingOptions options_;
   ObjectOptions objects_;
   const ObjectIndex index_{};
 };
 
+HULLSLAM_WITH_ALL_CAMERAS(MotionModel);
+
 // Patches grow and shrink by several levels of the pyramid when the camera moves by metres.
-TEST_F(MotionModel, FindsPatchesThatChangedTheirSize) {
+TEST_P(MotionModel, FindsPatchesThatChangedTheirSize) {
   const Rigid3 start = made_.map.keyframes().At(KeyframeId(0)).cam_from_world;
   const auto still = Estimate(Rigid3(), start);
   ASSERT_TRUE(still);
@@ -70,7 +73,7 @@ TEST_F(MotionModel, FindsPatchesThatChangedTheirSize) {
 }
 
 // 25 px are more than the window at the finest levels, but less than the wider one.
-TEST_F(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
+TEST_P(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
   const Rigid3 start = made_.map.keyframes().At(KeyframeId(0)).cam_from_world;
   const double turn = 25.0 / world_.sensor().camera.fx;
   const Rigid3 truth = Rigid3(ExpSo3({0.0, turn, 0.0}), Eigen::Vector3d::Zero()) * start;

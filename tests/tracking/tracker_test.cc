@@ -17,6 +17,7 @@
 #include "objects/made_objects.h"
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
+#include "support/test_cameras.h"
 #include "support/unknown_points.h"
 #include "tracking/pose_source.h"
 
@@ -63,7 +64,8 @@ void ExpectNear(const Rigid3& a, const Rigid3& b, double tolerance) {
 // a keyframe.
 class TrackerTest : public testing::Test {
  protected:
-  TrackerTest() : tracker_(world_.sensor(), options_) {}
+  explicit TrackerTest(const Sensor& sensor = SyntheticSensor())
+      : world_({.points = 300}, sensor), tracker_(world_.sensor(), options_) {}
 
   // Initialises on frame 0 and gives the tracker a map with the true positions of all points.
   void Begin() {
@@ -102,12 +104,19 @@ class TrackerTest : public testing::Test {
     return frame;
   }
 
-  const SyntheticWorld world_{{.points = 300}};
+  const SyntheticWorld world_;
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5, 10});
   TrackingOptions options_{.keyframe_interval = 0.0};  // the next frame may be a keyframe
   Tracker tracker_;
   std::shared_ptr<const Map> map_;
 };
+
+class TrackerWith : public TrackerTest, public testing::WithParamInterface<TestCamera> {
+ protected:
+  TrackerWith() : TrackerTest(GetParam().sensor) {}
+};
+
+HULLSLAM_WITH_ALL_CAMERAS(TrackerWith);
 
 // Half of the landmarks of every keyframe are common ones, the other half only this keyframe
 // observes. The frame shows the common ones. So no keyframe is needed if landmarks with a single
@@ -193,7 +202,7 @@ TEST_F(NeverMappedObject, CausesNoRequestIfObjectsAreNoReasonForKeyframes) {
   EXPECT_EQ(Requests({}, false), std::vector<uint32_t>());
 }
 
-TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
+TEST_P(TrackerWith, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
   const auto frame = world_.Observe(0).frame;
   const Tracker::Result result = Process(frame);
   EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
@@ -244,7 +253,7 @@ TEST_F(TrackerTest, InitialisesLaterWhenTheFirstFramesHaveNoDepth) {
   EXPECT_TRUE(Process(world_.Observe(3).frame).message);
 }
 
-TEST_F(TrackerTest, FindsThePoseOfExactFrames) {
+TEST_P(TrackerWith, FindsThePoseOfExactFrames) {
   Begin();
   for (uint32_t i = 1; i <= 20; ++i) {
     const Tracker::Result result = Process(world_.Observe(i).frame);
@@ -256,7 +265,7 @@ TEST_F(TrackerTest, FindsThePoseOfExactFrames) {
   }
 }
 
-TEST_F(TrackerTest, FollowsAMapThatMoved) {
+TEST_P(TrackerWith, FollowsAMapThatMoved) {
   Begin();
   TrackFrames(1, 5);
   const Rigid3 old_from_new(ExpSo3({0.3, 1.0, -0.4}), {10.0, -20.0, 5.0});
@@ -277,7 +286,7 @@ TEST_F(TrackerTest, FollowsAMapThatMoved) {
   }
 }
 
-TEST_F(TrackerTest, ALostFrameDoesNotChangeTheReferenceKeyframe) {
+TEST_P(TrackerWith, ALostFrameDoesNotChangeTheReferenceKeyframe) {
   Begin();
   TrackFrames(1, 5);
   const Tracker::Result before = Process(world_.Observe(6).frame);
@@ -289,7 +298,7 @@ TEST_F(TrackerTest, ALostFrameDoesNotChangeTheReferenceKeyframe) {
   ExpectNear(after.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(8), 1e-6);
 }
 
-TEST_F(TrackerTest, TheReportSaysWhatWasFoundInTheFrame) {
+TEST_P(TrackerWith, TheReportSaysWhatWasFoundInTheFrame) {
   Begin();
   const SyntheticView view = world_.Observe(1);
   const Tracker::Result result = Process(view.frame);
@@ -322,7 +331,7 @@ TEST_F(TrackerTest, ContinuesWhenItsReferenceKeyframeIsCulled) {
   }
 }
 
-TEST_F(TrackerTest, ContinuesWhenAllItsLandmarksAreReplaced) {
+TEST_P(TrackerWith, ContinuesWhenAllItsLandmarksAreReplaced) {
   Begin();
   TrackFrames(1, 5);
   for (const LandmarkId old : made_.landmarks) {
@@ -423,10 +432,10 @@ TEST_F(TwinTest, ALandmarkIsFoundAtOneKeypointOnlyAfterItsTwinWasReplaced) {
   EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
 }
 
-TEST_F(TrackerTest, IsLostInAnotherWorldAndRecoversInItsOwn) {
+TEST_P(TrackerWith, IsLostInAnotherWorldAndRecoversInItsOwn) {
   Begin();
   TrackFrames(1, 5);
-  const SyntheticWorld other({.points = 300, .seed = 2});
+  const SyntheticWorld other({.points = 300, .seed = 2}, world_.sensor());
   for (uint32_t i = 6; i <= 8; ++i) {
     const Tracker::Result lost = Process(other.Observe(i).frame);
     EXPECT_EQ(lost.report.tracked.state, TrackingState::kLost);
@@ -440,7 +449,7 @@ TEST_F(TrackerTest, IsLostInAnotherWorldAndRecoversInItsOwn) {
   TrackFrames(10, 12);
 }
 
-TEST_F(TrackerTest, AFrameWithoutKeypointsIsLost) {
+TEST_P(TrackerWith, AFrameWithoutKeypointsIsLost) {
   Begin();
   auto blank = std::make_shared<Frame>();
   blank->id = FrameId(1);
@@ -551,7 +560,7 @@ TEST_F(TrackerTest, RequestsNoKeyframeWhileTooManyRequestsWait) {
       tracker_.Process(DemandingFrame(2), map_, {.is_idle = false, .requests_waiting = 2}).message);
 }
 
-TEST_F(TrackerTest, ARequestHasThePoseTheLandmarksAndTheSightings) {
+TEST_P(TrackerWith, ARequestHasThePoseTheLandmarksAndTheSightings) {
   Begin();
   const Tracker::Result first = Process(world_.Observe(1).frame);
   ASSERT_FALSE(first.message);
@@ -629,8 +638,9 @@ TEST(Tracker, SameFramesGiveTheSameBits) {
   }
 }
 
-TEST(Tracker, NoiseMovesThePoseByLittle) {
-  const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10});
+TEST_P(TrackerWith, NoiseMovesThePoseByLittle) {
+  const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10},
+                             world_.sensor());
   SyntheticMap made = MakeSyntheticMap(world, {0, 8, 16});
   const auto map = Publish(made.map);
   Tracker tracker(world.sensor(), TrackingOptions());
