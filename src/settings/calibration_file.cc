@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "hullslam/util/error.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
@@ -129,16 +130,76 @@ RecognisedCalibration CalibrationOfStella(const YamlMap& map, const std::string&
   return result;
 }
 
+// ---- camodocal, whose cameras VINS-Fusion has
+
+// Kannala-Brandt is written there with k2 to k5 as coefficients of theta^3 to theta^9, and with mu,
+// mv, u0 and v0 for the focal lengths and the principal point.
+RecognisedCalibration CalibrationOfCamodocal(const YamlMap& file) {
+  const std::string model = file.Text("model_type");
+  const bool is_fisheye = model == "KANNALA_BRANDT";
+  if (!is_fisheye && model != "PINHOLE") {
+    file.Fail("model_type", fmt::format("is '{}', expected PINHOLE or KANNALA_BRANDT; HullSLAM has "
+                                        "no other lens",
+                                        ShowText(model)));
+  }
+  const YamlMap lens = file.Map("projection_parameters");
+  const YamlMap distortion = is_fisheye ? lens : file.Map("distortion_parameters");
+  RecognisedCalibration result;
+  PinholeCamera& camera = result.calibration.camera;
+  camera.fx = lens.Number(is_fisheye ? "mu" : "fx");
+  camera.fy = lens.Number(is_fisheye ? "mv" : "fy");
+  camera.cx = lens.Number(is_fisheye ? "u0" : "cx");
+  camera.cy = lens.Number(is_fisheye ? "v0" : "cy");
+  camera.width = file.Pixels("image_width", file.Number("image_width"));
+  camera.height = file.Pixels("image_height", file.Number("image_height"));
+  std::vector<double> coefficients;
+  for (const char* const name :
+       is_fisheye ? std::array{"k2", "k3", "k4", "k5"} : std::array{"k1", "k2", "p1", "p2"}) {
+    coefficients.push_back(distortion.Number(name));
+  }
+  SetNamedLens(is_fisheye ? "fisheye" : "radtan", coefficients, camera);
+  result.program = "a calibration of camodocal";
+  return result;
+}
+
+// ---- files that lack something
+
+constexpr const char* kPairKeys =
+    "write both cameras as LEFT.K, LEFT.D, LEFT.R, LEFT.P, LEFT.width, LEFT.height and RIGHT.* "
+    "(ORB-SLAM2), or use a camchain of Kalibr";
+
+// The calibrations of the ZED SDK are not YAML, but their first line, [LEFT_CAM_2K], is a list of
+// it.
+bool IsOfZed(const YAML::Node& root) {
+  return root.IsSequence() && root.size() > 0 && root[0].IsScalar() &&
+         root[0].Scalar().starts_with("LEFT_CAM");
+}
+
 }  // namespace
 
 std::optional<RecognisedCalibration> RecogniseCalibration(const fs::path& file,
                                                           const YAML::Node& root) {
+  if (IsOfZed(root)) {
+    throw InputError(
+        file.string() +
+        ": is a calibration of the ZED SDK, which HullSLAM does not read. For images "
+        "that the SDK has rectified, write fx, fy, cx, cy of [LEFT_CAM_*] as Camera.fx "
+        "to Camera.cy, and Camera.bf: fx times Baseline in m");
+  }
   if (!root.IsMap()) {
     return std::nullopt;
   }
   const YamlMap map(file, "a calibration", root);
   if (map.Has(KeyOf(map, kMatrixKeys))) {
     return CalibrationOfMatrix(map);
+  }
+  if (map.Has("M1") && map.Has("M2")) {
+    map.Fail("M1", std::string("is of a stereo calibration of OpenCV, which does not tell the size "
+                               "of the images; ") +
+                       kPairKeys);
+  }
+  if (map.Has("model_type") && map.Has("projection_parameters")) {
+    return CalibrationOfCamodocal(map);
   }
   if (map.Has("cam0")) {
     return CalibrationOfKalibr(map);

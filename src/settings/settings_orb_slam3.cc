@@ -35,7 +35,7 @@ struct Entry {
   std::string_view why = {};
 };
 
-constexpr std::array<Entry, 26> kEntries = {{
+constexpr std::array<Entry, 31> kEntries = {{
     {"File.version", Kind::kVersion},
     {"Camera.type", Kind::kModel},
     {"Camera1.fx", Kind::kRenamed, "Camera.fx"},
@@ -62,6 +62,12 @@ constexpr std::array<Entry, 26> kEntries = {{
     {"Camera1.overlappingEnd", Kind::kIgnored},
     {"Camera2.overlappingBegin", Kind::kIgnored},
     {"Camera2.overlappingEnd", Kind::kIgnored},
+    // Keys of its files before format 1.0. The lens is that of Camera.type.
+    {"Camera.bFishEye", Kind::kIgnored},
+    {"Camera.lappingBegin", Kind::kIgnored},
+    {"Camera.lappingEnd", Kind::kIgnored},
+    {"Camera2.lappingBegin", Kind::kIgnored},
+    {"Camera2.lappingEnd", Kind::kIgnored},
     {"loopClosing", Kind::kRenamed, "loop.closing"},
 }};
 

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPose = "Stereo.T_c1_c2";
+constexpr std::string_view kFormerPose = "Tlr";  // before format 1.0, without the last row
 
 Eigen::Quaterniond RotationIn(const YamlMap& file, const std::string& key,
                               const Eigen::Matrix3d& matrix) {
@@ -71,7 +72,9 @@ StereoCalibration PairOfOrb2(const YamlMap& file) {
 
 // ---- ORB-SLAM3
 
-bool IsOrb3Pair(const YamlMap& file) { return file.Has("Camera2.fx") || file.Has(kPose); }
+bool IsOrb3Pair(const YamlMap& file) {
+  return file.Has("Camera2.fx") || file.Has(kPose) || file.Has(kFormerPose);
+}
 
 StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   StereoCalibration pair{camera, camera, {}};
@@ -91,7 +94,9 @@ StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   pair.right.k4 = number("k4");
   pair.right.k5 = number("k5");
   pair.right.k6 = number("k6");
-  pair.right_from_left = Inverse(ReadRigid3(file, kPose));
+  pair.right_from_left =
+      Inverse(file.Has(kFormerPose) ? ReadRigid3(file, kFormerPose, RigidRows::kThree)
+                                    : ReadRigid3(file, kPose));
   return pair;
 }
 
@@ -106,7 +111,7 @@ StereoCalibration TwinsOf(const PinholeCamera& camera) {
 
 bool IsStereoKey(std::string_view key) {
   return key.starts_with("LEFT.") || key.starts_with("RIGHT.") || key.starts_with("Camera2.") ||
-         key == kPose;
+         key == kPose || key == kFormerPose;
 }
 
 bool HasRightCamera(const fs::path& file) {

@@ -18,7 +18,7 @@ bool IsStereoKey(std::string_view key);
 // The pair of a settings file that describes both cameras as they are:
 // - of ORB-SLAM2: LEFT.K, LEFT.D, LEFT.R, LEFT.P, LEFT.width, LEFT.height, and the same for RIGHT;
 // - of ORB-SLAM3: Camera2.fx and so on beside `camera`, the left one, with Stereo.T_c1_c2, the pose
-//   of the second camera in the first one;
+//   of the second camera in the first one (Tlr, 3x4, in files before format 1.0);
 // - of Kalibr: cam0 and cam1 of a camchain.
 // A file with one camera, `camera`, and Camera.bf describes rectified images, for which the pair is
 // absent, or two equal lenses that look in the same direction. Throws InputError with file, line

@@ -7,8 +7,11 @@
 
 namespace hullslam {
 
-Rigid3 ReadRigid3(const YamlMap& map, std::string_view key) {
-  const std::vector<double> numbers = map.Matrix(key, 16);
+Rigid3 ReadRigid3(const YamlMap& map, std::string_view key, RigidRows rows) {
+  std::vector<double> numbers = map.Matrix(key, rows == RigidRows::kFour ? 16 : 12);
+  if (rows == RigidRows::kThree) {
+    numbers.insert(numbers.end(), {0.0, 0.0, 0.0, 1.0});
+  }
   const Eigen::Matrix4d matrix =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
   const auto rotation = RotationOf(matrix.topLeftCorner<3, 3>());

@@ -170,6 +170,42 @@ TEST_F(CalibrationFile, OfTumVisSensor) {
   EXPECT_EQ(read->calibration.frames_per_second, 20.0);
 }
 
+TEST_F(CalibrationFile, OfCamodocal) {
+  const std::string head =
+      "%YAML:1.0\n---\nmodel_type: PINHOLE\ncamera_name: camera\nimage_width: 640\n"
+      "image_height: 480\n";
+  const auto pinhole =
+      Read(head +
+           "distortion_parameters:\n   k1: 0.1\n   k2: -0.2\n   p1: 0.001\n   p2: 0.002\n"
+           "projection_parameters:\n   fx: 517.3\n   fy: 516.5\n   cx: 318.6\n   cy: 255.3\n");
+  ASSERT_TRUE(pinhole);
+  EXPECT_EQ(pinhole->program, "a calibration of camodocal");
+  EXPECT_EQ(pinhole->calibration.camera.fy, 516.5);
+  EXPECT_EQ(pinhole->calibration.camera.p2, 0.002);
+  EXPECT_EQ(pinhole->calibration.camera.height, 480);
+  const std::string fisheye_text =
+      With(head, "PINHOLE", "KANNALA_BRANDT") +
+      "projection_parameters:\n   k2: 0.01\n   k3: 0.02\n   k4: 0.03\n   k5: 0.04\n   mu: 190\n"
+      "   mv: 191\n   u0: 320\n   v0: 240\n";
+  const auto fisheye = Read(fisheye_text);
+  ASSERT_TRUE(fisheye);
+  EXPECT_TRUE(fisheye->calibration.camera.IsFisheye());
+  EXPECT_EQ(fisheye->calibration.camera.k1, 0.01);
+  EXPECT_EQ(fisheye->calibration.camera.k4, 0.04);
+  EXPECT_EQ(fisheye->calibration.camera.cy, 240.0);
+  ExpectRefusal(With(fisheye_text, "KANNALA_BRANDT", "MEI"),
+                {"c.yaml:3: model_type is 'MEI'", "expected PINHOLE or KANNALA_BRANDT"});
+  ExpectRefusal(With(fisheye_text, "   mv: 191\n", ""), {"projection_parameters.mv is not given"});
+}
+
+TEST_F(CalibrationFile, WhatLacksSomethingIsNamedWithAWayOut) {
+  ExpectRefusal(
+      "M1: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD1: [0, 0, 0, 0]\nM2: [1]\nT: [-0.1, 0, 0]\n",
+      {"c.yaml:1: M1", "a stereo calibration of OpenCV", "size", "LEFT.K", "Kalibr"});
+  ExpectRefusal("[LEFT_CAM_VGA]\nfx=261.4\nfy=261.4\n[STEREO]\nBaseline=120.006\n",
+                {"c.yaml", "ZED SDK", "Camera.bf"});
+}
+
 TEST_F(CalibrationFile, SettingsAreNone) {
   EXPECT_FALSE(Read("%YAML:1.0\nCamera.fx: 500\nCamera.type: \"PinHole\"\n"));
   EXPECT_FALSE(Read(""));

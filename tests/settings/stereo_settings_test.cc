@@ -102,6 +102,21 @@ TEST_F(StereoSettings, FilesOfOrbSlam3AreRead) {
   EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.11008, 1e-4);
 }
 
+// Its files before format 1.0 have the pose of the right camera in Tlr, and keys for the overlap.
+TEST_F(StereoSettings, FormerFilesOfOrbSlam3AreRead) {
+  const auto rectifier = Read(
+      "%YAML:1.0\nCamera.type: \"KannalaBrandt8\"\nCamera.fx: 261.4\nCamera.fy: 261.4\n"
+      "Camera.cx: 334.8\nCamera.cy: 188.8\nCamera.k1: 0.001\nCamera.k2: 0.0\nCamera.k3: 0.0\n"
+      "Camera.k4: 0.0\nCamera2.fx: 261.4\nCamera2.fy: 261.4\nCamera2.cx: 334.8\nCamera2.cy: 188.8\n"
+      "Camera2.k1: 0.001\nCamera2.k2: 0.0\nCamera2.k3: 0.0\nCamera2.k4: 0.0\n"
+      "Camera.lappingBegin: 0\nCamera.lappingEnd: 671\nCamera2.lappingBegin: 0\n"
+      "Camera2.lappingEnd: 671\nCamera.bFishEye: 0\nTlr: !!opencv-matrix\n  rows: 3\n  cols: 4\n"
+      "  dt: f\n  data: [1, 0, 0, 0.12, 0, 1, 0, 0, 0, 0, 1, 0]\nCamera.width: 672\n"
+      "Camera.height: 376\nCamera.bf: 31.4\n");
+  ASSERT_NE(rectifier, nullptr);
+  EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.12, 1e-9);
+}
+
 TEST_F(StereoSettings, ARectifiedCameraNeedsNone) {
   EXPECT_EQ(Read("Camera.fx: 500\nCamera.fy: 500\nCamera.cx: 320\nCamera.cy: 240\n"), nullptr);
 }

@@ -31,6 +31,14 @@ TEST_F(YamlPose, AllFormsOfAMatrixAreTheSamePose) {
   }
 }
 
+TEST_F(YamlPose, TheLastRowMayBeMissingWhereThisIsAllowed) {
+  folder_.Write("pose.yaml", "T: [0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3]");
+  const YamlMap map(folder_.path() / "pose.yaml", "a pose");
+  const Rigid3 pose = ReadRigid3(map, "T", RigidRows::kThree);
+  EXPECT_TRUE((pose * Eigen::Vector3d(1.0, 0.0, 0.0)).isApprox(Eigen::Vector3d(1, 3, 3)));
+  ExpectInputError([&] { ReadRigid3(map, "T"); }, {"pose.yaml:1: T has 12 value(s), expected 16"});
+}
+
 TEST_F(YamlPose, OtherMatricesAreRefused) {
   ExpectInputError([&] { Read("[1, 2]"); }, {"pose.yaml:1: T has 2 value(s), expected 16"});
   ExpectInputError([&] { Read("[[1, 2], [3]]"); }, {"pose.yaml:1: T has 3 numbers, expected 16"});
