@@ -209,7 +209,7 @@ def parse_arguments(words):
                         help="the programs of the build that is measured (default: those of this "
                              "installation or of build/release/bin)")
     parser.add_argument("--tools", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
-                        help="evaluate and make_synthetic, which should be the same for all builds "
+                        help="hullslam and make_synthetic, which should be the same for all builds "
                              "(default: those of this installation or of build/release/bin)")
     parser.add_argument("--compare", type=pathlib.Path, metavar="FILE",
                         help="compare with this accuracy.json (default: docs/results/accuracy.json)")

@@ -17,7 +17,7 @@ scripts/setup.sh
 
 step "build"
 cmake --preset release
-cmake --build --preset release -j "$(nproc)" --target rgbd_tum evaluate make_synthetic
+cmake --build --preset release -j "$(nproc)" --target rgbd_tum hullslam_program make_synthetic
 
 step "demo"
 scripts/run_demo.sh build/demo

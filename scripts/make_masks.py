@@ -4,7 +4,7 @@
 finds the objects, and SAM (segment anything) refines the mask within each box.
 
     scripts/make_masks.py SEQUENCE
-    check_masks SEQUENCE SEQUENCE/masks --output pictures
+    hullslam check-masks SEQUENCE SEQUENCE/masks --output pictures
 
 SEQUENCE is a folder with rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), a folder rgb, or the images
 themselves; a sequence of EuRoC or KITTI, or stereo pairs, of which the left images are used; or a

@@ -5,7 +5,7 @@ objects from two sides, and the error over time. With --overlay N, DIR/overlays.
 with the outlines of their masks (dotted) and the ellipses of the mapped objects that they observe.
 
 RUN_DIR is a folder that a program has written by --output. What is drawn is the data of its report.html;
-without one, or with --groundtruth or --sequence, the program `view` makes the data. The run is drawn in
+without one, or with --groundtruth or --sequence, `hullslam view` makes the data. The run is drawn in
 its own world, turned so that up is up; the ground truth is aligned to it. Where frames have no pose,
 the path is dotted and the time is shaded.
 
@@ -51,11 +51,11 @@ def link_run(arguments, folder):
 
 
 def make_report(run_dir, page):
-    program = programs_folder() / "view"
+    program = programs_folder() / "hullslam"
     if not program.is_file():
         raise InputError(f"{program}: no such program; build it (cmake --build --preset release "
-                         "--target view), or run with --report")
-    command = [program, run_dir, "--report", "--output", page, "--quiet"]
+                         "--target hullslam_program), or run with --report")
+    command = [program, "view", run_dir, "--report", "--output", page, "--quiet"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise InputError(one_line(result.stderr.strip().removeprefix("error: ") or "no message", 400))

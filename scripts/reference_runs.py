@@ -28,7 +28,7 @@ HASHED = ("trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "saved.m
 
 
 def known_pose_run(folder, masks):
-    return ["map_objects", folder, "--poses", folder / "groundtruth.txt", "--masks", masks]
+    return ["hullslam", "map-objects", folder, "--poses", folder / "groundtruth.txt", "--masks", masks]
 
 
 def list_runs(desk, sequence, masks, saved_map):

@@ -37,7 +37,7 @@ step "run"
 "$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run" --report
 
 step "compare objects with ground truth"
-"$bin/evaluate" objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
+"$bin/hullslam" evaluate objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
 
 step "draw"
 "$top/scripts/plot_run.py" "$run" --overlay 6

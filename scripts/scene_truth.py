@@ -4,7 +4,7 @@
 
 For each pair RUN_DIR SEQUENCE it prints precision and recall of the relations on, in and beside
 between the mapped objects, and at the end those of all pairs together. With --questions N it also
-asks query_objects N questions per scene whose answer is known, and prints how often the right
+asks hullslam query N questions per scene whose answer is known, and prints how often the right
 object comes first. docs/scene.md explains how the figures are counted.
 
 Exit codes: 0 done, 2 bad usage or input.
@@ -189,11 +189,11 @@ def main():
     parser = parser_of(__doc__)
     parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
                         help="the output folder of a run, and its synthetic sequence. The run must "
-                        "have the world of the ground truth, as those of map_objects")
+                        "have the world of the ground truth, as those of map-objects")
     parser.add_argument("--questions", type=int, default=0, metavar="N",
                         help="ask N questions per scene")
-    parser.add_argument("--program", default=programs_folder() / "query_objects",
-                        help="path of query_objects (default: that of this installation or of "
+    parser.add_argument("--program", default=programs_folder() / "hullslam",
+                        help="path of hullslam (default: that of this installation or of "
                              "build/release/bin)")
     parser.add_argument("--list", action="store_true", help="also list all errors")
     arguments = parser.parse_args()

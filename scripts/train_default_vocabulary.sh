@@ -37,7 +37,7 @@ done
 [ $# -eq 2 ] || usage_error "expected FR1_XYZ and OUT"
 [ -f "$1/rgb.txt" ] || usage_error "$1/rgb.txt is missing; expected the folder of a TUM sequence"
 programs="$top/build/release/bin"
-[ -x "$programs/train_vocabulary" ] || fail "$programs/train_vocabulary is missing; build it first"
+[ -x "$programs/hullslam" ] || fail "$programs/hullslam is missing; build it first"
 if [ -z "$work" ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
@@ -58,4 +58,4 @@ for scene in desk room lowtexture; do
     mapfile -t -O "${#list[@]}" list < <(images "$sequence" | awk 'NR % 6 == 1')
   done
 done
-"$programs/train_vocabulary" "${list[@]}" --output "$2" --branching 10 --levels "$levels" --seed 0
+"$programs/hullslam" train-vocabulary "${list[@]}" --output "$2" --branching 10 --levels "$levels" --seed 0

@@ -9,6 +9,13 @@ y down, z forward). Lengths are in metres, in monocular runs in units of the map
 seconds.
 """
 
+try:
+    import numpy as _  # the module below would only say that it cannot be loaded
+except ImportError as error:
+    import sys
+    raise ImportError(f"hullslam needs numpy, which {sys.executable} does not have: install python3-numpy "
+                      "and use /usr/bin/python3") from error
+
 from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, MaskFiles, Masks,
                     Run, SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
                     TrajectoryErrors, __version__, default_settings, evaluate_trajectory, export,

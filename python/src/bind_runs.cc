@@ -122,7 +122,8 @@ void BindRuns(py::module_& module) {
       "The objects, relations and surfaces of a run (its folder) or of a saved map, as in\n"
       "scene.json (docs/scene.md): dict. Raises InputError for a run without masks.");
   module.def("report", &WriteReport, py::arg("source"), py::arg("output") = py::none(),
-             "Writes the report of a run (its folder) or of a saved map, as `view --report` does.\n"
+             "Writes the report of a run (its folder) or of a saved map, as `hullslam view "
+             "--report` does.\n"
              "Returns its path.\n\n"
              "output: the file; None: report.html in the folder, or beside the map.");
   module.def("export", &Export, py::arg("source"), py::arg("format"), py::arg("output"),

@@ -151,7 +151,7 @@ void BindErrors(py::module_& module) {
   module.def("evaluate_trajectory", &Evaluate, py::arg("groundtruth"), py::arg("estimate"),
              py::kw_only(), py::arg("align") = "se3", py::arg("pairing") = "tum",
              py::arg("max_difference") = py::none(),
-             "Measures the error of a trajectory, as the program `evaluate` does\n"
+             "Measures the error of a trajectory, as `hullslam evaluate` does\n"
              "(docs/outputs.md).\n\n"
              "groundtruth, estimate: Trajectory, or path of a file in TUM's format.\n"
              "align: 'se3', 'sim3' (monocular) or 'none'.\n"

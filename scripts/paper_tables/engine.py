@@ -210,7 +210,7 @@ def make_run(plan, name):
         content = {"version": RESULT_VERSION, "fingerprint": run["fingerprint"],
                    "failure": failure_of(code, message, plan["timeout"]),
                    **{key: provenance.get(key) for key in ("preset", "git", "settings_hash")},
-                   "figures": evaluate(plan["evaluate"], run, folder, summary)}
+                   "figures": evaluate(plan["hullslam"], run, folder, summary)}
         write(result, json.dumps(content, indent=1) + "\n")
 
 

@@ -73,13 +73,13 @@ def ask(*command):
 
 
 def evaluate(program, run, folder, summary):
-    """The figures of a finished run in `folder`. `program` is that which evaluates."""
+    """The figures of a finished run in `folder`. `program` is hullslam."""
     out, truth, scale = folder / "out", folder / "groundtruth.txt", 1.0
     figures = {"lost": lost_percent(summary), "frames": value_at(summary, "trajectory", "frames"),
                "keyframes": value_at(summary, "map", "keyframes"), "loops": value_at(summary, "map", "loops")}
     for file, prefix in (("trajectory.txt", ""), ("keyframes.txt", "keyframes_")):
         for alignment in ("se3", "sim3")[run["mode"] == "mono":] if truth.exists() else ():
-            report = ask(program, "trajectory", str(truth), str(out / file), "--align", alignment,
+            report = ask(program, "evaluate", "trajectory", str(truth), str(out / file), "--align", alignment,
                          "--json")
             figures[f"{prefix}ate_{alignment}"] = value_at(report, "ate_m", "rmse")
             if run["mode"] == "mono" and not prefix:
@@ -93,6 +93,6 @@ def evaluate(program, run, folder, summary):
                 "siou_mask": value_at(summary, "objects", "siou_mask_mean"),
                 "mtd": None if mtd is None or scale is None else mtd * scale**2}
     if run["objects"] is not None:
-        figures |= of_true_objects(ask(program, "objects", str(out), "--groundtruth", run["objects"],
-                                       "--json"))
+        figures |= of_true_objects(ask(program, "evaluate", "objects", str(out), "--groundtruth",
+                                       run["objects"], "--json"))
     return figures

@@ -134,7 +134,7 @@ class Planner:
 
     def plan(self):
         return {"version": RESULT_VERSION, "config": str(self.tools.config),
-                "evaluate": str(self.tools.path("evaluate")), "timeout": self.request.timeout,
+                "hullslam": str(self.tools.path("hullslam")), "timeout": self.request.timeout,
                 "runs": self.runs, "folders": self.folders}
 
     def add(self, sequence, mode, variant, seed, degradation=None, level=None, last=None):
@@ -189,7 +189,7 @@ class Planner:
             "objects": sequence.path("objects", seed),
             "fingerprint": digest(RESULT_VERSION, program, arguments, variant.masks, inputs,
                                   *(self.tools.hash(self.tools.path(tool))
-                                    for tool in (program, "evaluate")),
+                                    for tool in (program, "hullslam")),
                                   self.tools.preset_hash(arguments), self.tools.vocabulary_hash())}
         return name
 

@@ -52,16 +52,12 @@ foreach(name rgbd_tum make_synthetic plot_run ablation)
   endif()
 endforeach()
 
-# A tool is a command of hullslam, and a link to it that names itself as it was called. The renderer is
-# a program of its own, which hullslam finds beside itself.
-foreach(name map_objects export evaluate check_masks train_vocabulary convert_vocabulary relocalise view)
-  string(REPLACE _ - command ${name})
-  foreach(call "hullslam ${command}" "hullslam-${name}")
-    separate_arguments(words UNIX_COMMAND "${call}")
-    execute_process(COMMAND ${prefix}/bin/${words} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
-    if(NOT help MATCHES "Usage: ${call} ")
-      message(FATAL_ERROR "${call} calls itself otherwise: ${help}")
-    endif()
-  endforeach()
+# A tool is a command of hullslam. The renderer is a program of its own, which hullslam finds beside
+# itself.
+foreach(command map-objects export evaluate check-masks train-vocabulary convert-vocabulary relocalise view)
+  execute_process(COMMAND ${prefix}/bin/hullslam ${command} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT help MATCHES "Usage: hullslam ${command} ")
+    message(FATAL_ERROR "hullslam ${command} calls itself otherwise: ${help}")
+  endif()
 endforeach()
 run(${prefix}/bin/hullslam make-synthetic --help OUTPUT_QUIET)

@@ -32,3 +32,15 @@ file(STRINGS ${WORK_DIR}/build/consumer beast REGEX "boost.*beast")
 if(beast)
   message(FATAL_ERROR "a program that uses hullslam::core has Boost.Beast in it: ${beast}")
 endif()
+
+# A component that is not there is an error with its reason.
+foreach(component io nonsense)
+  file(WRITE ${WORK_DIR}/${component}/CMakeLists.txt "cmake_minimum_required(VERSION 3.23)\nproject(user LANGUAGES CXX)\n"
+       "find_package(hullslam REQUIRED COMPONENTS ${component})\n")
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK_DIR}/${component} -B ${WORK_DIR}/${component}/build -G Ninja
+                  -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix RESULT_VARIABLE code ERROR_VARIABLE message OUTPUT_QUIET)
+  string(REGEX REPLACE "[ \n]+" " " message "${message}")
+  if(code EQUAL 0 OR NOT message MATCHES "no component ${component}, (because it was built with HULLSLAM_CORE_ONLY|expected core)")
+    message(FATAL_ERROR "find_package with component ${component} ended with ${code}: ${message}")
+  endif()
+endforeach()

@@ -34,7 +34,7 @@ class CheckMasks : public ::testing::Test {
   ProgramResult Run(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {sequence_.path(), folder_.path() / "masks"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return RunProgram("check_masks", arguments);
+    return RunProgram("hullslam check-masks", arguments);
   }
 
   // The number that follows a name at the start of a line.
@@ -151,7 +151,7 @@ TEST_F(CheckMasks, NeedsNeitherDepthNorImages) {
 TEST_F(CheckMasks, AcceptsBoxesOfYolo) {
   folder_.Write("boxes/00.txt", "41 0.5 0.5 0.1 0.1\n");
   const ProgramResult result =
-      RunProgram("check_masks", {sequence_.path(), folder_.path() / "boxes"});
+      RunProgram("hullslam check-masks", {sequence_.path(), folder_.path() / "boxes"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("(boxes)"), std::string::npos) << result.output;
   EXPECT_EQ(Count(result, "kept"), "1");
@@ -180,10 +180,10 @@ TEST(CheckMasksOfTurnedImages, AreNoticedByAllPrograms) {
     folder.Write("masks/" + entry.path().filename().string(), turned);
   }
   for (const fs::path& masks : {desk / "masks", folder.path() / "masks"}) {
-    const ProgramResult checked = RunProgram("check_masks", {desk, masks, "--quiet"});
-    const ProgramResult mapped =
-        RunProgram("map_objects", {desk, "--poses", desk / "groundtruth.txt", "--masks", masks,
-                                   "--output", folder.path() / "run", "--overwrite", "--quiet"});
+    const ProgramResult checked = RunProgram("hullslam check-masks", {desk, masks, "--quiet"});
+    const ProgramResult mapped = RunProgram(
+        "hullslam map-objects", {desk, "--poses", desk / "groundtruth.txt", "--masks", masks,
+                                 "--output", folder.path() / "run", "--overwrite", "--quiet"});
     for (const std::string& errors : {checked.errors, mapped.errors}) {
       EXPECT_EQ(errors.find("the EXIF orientation 6") != std::string::npos, masks != desk / "masks")
           << errors;
@@ -204,11 +204,12 @@ TEST_F(CheckMasks, RefusesBadArguments) {
   refuse(Run({"--set", "Camera.fz=1"}), "Camera.fz");
   refuse(Run({"--settings", "none.yaml"}), "none.yaml");
   refuse(Run({"--output", "/proc/none"}), "/proc/none");
-  refuse(RunProgram("check_masks", {sequence_.path()}), "MASKS");
-  refuse(RunProgram("check_masks", {sequence_.path(), folder_.path() / "none"}), "none");
-  refuse(RunProgram("check_masks", {folder_.path() / "none", folder_.path()}), "none");
+  refuse(RunProgram("hullslam check-masks", {sequence_.path()}), "MASKS");
+  refuse(RunProgram("hullslam check-masks", {sequence_.path(), folder_.path() / "none"}), "none");
+  refuse(RunProgram("hullslam check-masks", {folder_.path() / "none", folder_.path()}), "none");
   folder_.Write("others/1.5.txt", kCup);
-  refuse(RunProgram("check_masks", {sequence_.path(), folder_.path() / "others"}), "'1.5.txt'");
+  refuse(RunProgram("hullslam check-masks", {sequence_.path(), folder_.path() / "others"}),
+         "'1.5.txt'");
 }
 
 TEST(CheckMasksData, RealMasksAreAllReadable) {
@@ -216,7 +217,8 @@ TEST(CheckMasksData, RealMasksAreAllReadable) {
   if (!data) {
     GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
   }
-  const ProgramResult result = RunProgram("check_masks", {*data, *data / "masks-yolo8n-seg"});
+  const ProgramResult result =
+      RunProgram("hullslam check-masks", {*data, *data / "masks-yolo8n-seg"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   std::istringstream counts(result.output.substr(result.output.find("malformed")));
   std::string name;

@@ -18,7 +18,7 @@ class ConvertVocabulary : public ::testing::Test {
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
 
   void ExpectRefused(const std::vector<std::string>& arguments, const std::string& why) const {
-    const ProgramResult result = RunProgram("convert_vocabulary", arguments);
+    const ProgramResult result = RunProgram("hullslam convert-vocabulary", arguments);
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
     EXPECT_FALSE(std::filesystem::exists(Path("out.txt")));
@@ -30,11 +30,11 @@ class ConvertVocabulary : public ::testing::Test {
 
 TEST_F(ConvertVocabulary, ThereAndBackGivesTheSameBytes) {
   const std::string binary = folder_.Write("a.bow", BytesOf(vocabulary_)).string();
-  const ProgramResult to_text = RunProgram("convert_vocabulary", {binary, Path("b.txt")});
+  const ProgramResult to_text = RunProgram("hullslam convert-vocabulary", {binary, Path("b.txt")});
   ASSERT_EQ(to_text.exit_code, 0) << to_text.errors;
   EXPECT_NE(to_text.output.find("64 words, branching 4, 3 levels, hash "), std::string::npos);
-  const ProgramResult back =
-      RunProgram("convert_vocabulary", {Path("b.txt"), Path("c"), "--form", "binary", "--quiet"});
+  const ProgramResult back = RunProgram("hullslam convert-vocabulary",
+                                        {Path("b.txt"), Path("c"), "--form", "binary", "--quiet"});
   ASSERT_EQ(back.exit_code, 0) << back.errors;
   EXPECT_EQ(back.output + back.errors, "");
   EXPECT_EQ(RunShell("cmp '" + binary + "' '" + Path("c") + "'"), 0);

@@ -36,7 +36,7 @@ class Evaluate : public ::testing::Test {
 
   // Expects exit code 2, nothing on stdout, and one line on stderr that contains `part`.
   static void ExpectRefusal(const std::vector<std::string>& arguments, const std::string& part) {
-    const ProgramResult result = RunProgram("evaluate", arguments);
+    const ProgramResult result = RunProgram("hullslam evaluate", arguments);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.output, "");
     EXPECT_TRUE(result.errors.starts_with("error: ")) << result.errors;
@@ -51,7 +51,7 @@ class Evaluate : public ::testing::Test {
 
 TEST_F(Evaluate, StatesErrorsPairsAlignmentAndScale) {
   const ProgramResult result =
-      RunProgram("evaluate", {"trajectory", truth_, half_, "--align", "sim3"});
+      RunProgram("hullslam evaluate", {"trajectory", truth_, half_, "--align", "sim3"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");
   for (const char* const part :
@@ -63,8 +63,8 @@ TEST_F(Evaluate, StatesErrorsPairsAlignmentAndScale) {
 
 TEST_F(Evaluate, JsonHasTheSameNumbers) {
   const ProgramResult result =
-      RunProgram("evaluate", {"trajectory", truth_, half_, "--json", "--tool", "evo", "--align",
-                              "none", "--max-diff", "0.05"});
+      RunProgram("hullslam evaluate", {"trajectory", truth_, half_, "--json", "--tool", "evo",
+                                       "--align", "none", "--max-diff", "0.05"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["pairs"], 60);
@@ -189,7 +189,7 @@ class EvaluateObjects : public Evaluate {
 };
 
 TEST_F(EvaluateObjects, MeasuresTheFinishedRunAgain) {
-  const ProgramResult result = RunProgram("evaluate", {"objects", run_, "--json"});
+  const ProgramResult result = RunProgram("hullslam evaluate", {"objects", run_, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["count"], 1);
@@ -207,7 +207,7 @@ TEST_F(EvaluateObjects, MeasuresTheFinishedRunAgain) {
 
 TEST_F(EvaluateObjects, ComparesWithTheTruth) {
   const ProgramResult result =
-      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+      RunProgram("hullslam evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto truth = nlohmann::json::parse(result.output)["groundtruth"];
   EXPECT_EQ(truth["alignment"], "se3");
@@ -226,7 +226,7 @@ TEST_F(EvaluateObjects, ComparesWithTheTruth) {
 TEST_F(EvaluateObjects, AMonocularRunIsComparedInMetres) {
   WriteMonocularRun(2.5);
   const ProgramResult result =
-      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+      RunProgram("hullslam evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto truth = nlohmann::json::parse(result.output)["groundtruth"];
   EXPECT_EQ(truth["alignment"], "sim3");
@@ -239,13 +239,13 @@ TEST_F(EvaluateObjects, AMonocularRunIsComparedInMetres) {
 
 TEST_F(EvaluateObjects, NamesTheAlignmentAndTheUnit) {
   const std::vector<std::string> arguments = {"objects", run_, "--groundtruth", truth_file_};
-  const ProgramResult with_depth = RunProgram("evaluate", arguments);
+  const ProgramResult with_depth = RunProgram("hullslam evaluate", arguments);
   EXPECT_NE(with_depth.output.find("half axes m\n"), std::string::npos) << with_depth.output;
   EXPECT_NE(with_depth.output.find("after se3 alignment of the poses with scale 1.000000 (ATE"),
             std::string::npos)
       << with_depth.output;
   WriteMonocularRun(2.5);
-  const ProgramResult monocular = RunProgram("evaluate", arguments);
+  const ProgramResult monocular = RunProgram("hullslam evaluate", arguments);
   for (const char* const part :
        {"half axes u\n", "MTD u2", " u2; mean tangent", "u is the unit of length of the map",
         "after sim3 alignment of the poses with scale 2.50000", "1 mapped once"}) {
@@ -261,7 +261,7 @@ TEST_F(EvaluateObjects, TheAlignmentCanBeGiven) {
   std::vector<std::string> arguments = {"objects", run_,      "--groundtruth", truth_file_,
                                         "--json",  "--align", "sim3"};
   const auto counts = [&] {
-    const ProgramResult result = RunProgram("evaluate", arguments);
+    const ProgramResult result = RunProgram("hullslam evaluate", arguments);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     return nlohmann::json::parse(result.output)["groundtruth"];
   };
@@ -288,7 +288,7 @@ TEST_F(EvaluateObjects, AShortRunIsAlignedByItsOrientationsToo) {
   WriteFileAtomically(folder_.path() / "groundtruth.txt", FormatTrajectory(truth));
   WriteFileAtomically(folder_.path() / "run" / "trajectory.txt", FormatTrajectory(run));
   const ProgramResult result =
-      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+      RunProgram("hullslam evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto mapped = nlohmann::json::parse(result.output)["groundtruth"]["each"][0]["mapped"];
   ASSERT_EQ(mapped.size(), 1U);
@@ -296,8 +296,8 @@ TEST_F(EvaluateObjects, AShortRunIsAlignedByItsOrientationsToo) {
 }
 
 TEST_F(EvaluateObjects, PrintsTables) {
-  const ProgramResult result =
-      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--min-masks", "41"});
+  const ProgramResult result = RunProgram(
+      "hullslam evaluate", {"objects", run_, "--groundtruth", truth_file_, "--min-masks", "41"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* const part :
        {"1 mapped, 2 not mapped; 1 observations and 1 lines", "mean SIoU 0.98",
@@ -309,7 +309,7 @@ TEST_F(EvaluateObjects, PrintsTables) {
 TEST_F(EvaluateObjects, ARunWithoutObjectsHasNoMeans) {
   report_.objects.clear();
   WriteRun();
-  const ProgramResult result = RunProgram("evaluate", {"objects", run_});
+  const ProgramResult result = RunProgram("hullslam evaluate", {"objects", run_});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("mean SIoU - with hulls, - with masks"), std::string::npos)
       << result.output;
@@ -331,7 +331,7 @@ TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
 }
 
 TEST_F(Evaluate, HelpIsNoError) {
-  const ProgramResult result = RunProgram("evaluate", {"trajectory", "--help"});
+  const ProgramResult result = RunProgram("hullslam evaluate", {"trajectory", "--help"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_NE(result.output.find("--max-diff"), std::string::npos);
 }
@@ -342,7 +342,7 @@ TEST(EvaluateData, PrintsAGoldenValue) {
   if (!truth || !estimate) {
     GTEST_SKIP() << "the golden trajectories are not on this machine; set HULLSLAM_DATA";
   }
-  const ProgramResult result = RunProgram("evaluate", {"trajectory", *truth, *estimate});
+  const ProgramResult result = RunProgram("hullslam evaluate", {"trajectory", *truth, *estimate});
   EXPECT_NE(result.output.find("rmse 0.013473"), std::string::npos) << result.output;
   EXPECT_NE(result.output.find("786 (tum's rule"), std::string::npos) << result.output;
 }

@@ -59,14 +59,14 @@ class Export : public ::testing::Test {
     std::vector<std::string> arguments = {input.empty() ? run() : input, "--to", format, "--output",
                                           output};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = RunProgram("export", arguments);
+    const ProgramResult result = RunProgram("hullslam export", arguments);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     return result.output + result.errors;
   }
   // Expects exit code 2, one line on stderr with all parts, and no output.
   void ExpectRefused(const std::vector<std::string>& arguments,
                      const std::vector<std::string>& parts) const {
-    const ProgramResult result = RunProgram("export", arguments);
+    const ProgramResult result = RunProgram("hullslam export", arguments);
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;
     for (const std::string& part : parts) {

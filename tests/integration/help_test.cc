@@ -14,17 +14,9 @@
 namespace hullslam {
 namespace {
 
-// The commands of hullslam and the links that stand for them.
-constexpr std::array<std::pair<const char*, const char*>, 9> kLinkedTools = {
-    {{"check-masks", "check_masks"},
-     {"convert-vocabulary", "convert_vocabulary"},
-     {"evaluate", "evaluate"},
-     {"export", "export"},
-     {"map-objects", "map_objects"},
-     {"query", "query_objects"},
-     {"relocalise", "relocalise"},
-     {"train-vocabulary", "train_vocabulary"},
-     {"view", "view"}}};
+constexpr std::array<const char*, 10> kCommands = {
+    "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects",
+    "query",       "relocalise",         "segment",  "train-vocabulary", "view"};
 
 class Help : public ::testing::TestWithParam<std::string> {};
 
@@ -43,8 +35,8 @@ TEST_P(Help, TheVersionIsPrinted) {
   EXPECT_NE(result.output.find('.'), std::string::npos) << result.output;
 }
 
-// All programs, and the names of former programs, which are links to hullslam now. The others of
-// the folder are examples of the library, which take no options.
+// All programs and commands. The other files of the folder are examples of the library, which take
+// no options.
 std::vector<std::string> ProgramNames() {
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(SourceFolder() / "Examples")) {
@@ -54,19 +46,24 @@ std::vector<std::string> ProgramNames() {
       names.push_back(name);
     }
   }
-  for (const auto& [command, link] : kLinkedTools) {
-    names.emplace_back(link);
+  for (const char* const command : kCommands) {
+    names.push_back(std::string("hullslam ") + command);
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, Help, ::testing::ValuesIn(ProgramNames()),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Programs, Help, ::testing::ValuesIn(ProgramNames()), [](const auto& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  return name;
+});
 
 // Each --set takes one setting, so the help must not promise more.
 TEST(HelpOfSettings, ShowsOneKeyAndValue) {
-  for (const char* const program : {"rgbd_tum", "mono_video", "check_masks", "map_objects"}) {
+  for (const char* const program :
+       {"rgbd_tum", "mono_video", "hullslam check-masks", "hullslam map-objects"}) {
     const std::string help = RunProgram(program, {"--help"}).output;
     const size_t at = help.find("--set KEY=VALUE");
     ASSERT_NE(at, std::string::npos) << help;
@@ -76,7 +73,7 @@ TEST(HelpOfSettings, ShowsOneKeyAndValue) {
 
 TEST(HelpOfSubcommands, NamesTheExitCodes) {
   for (const char* const command : {"trajectory", "objects"}) {
-    const ProgramResult result = RunProgram("evaluate", {command, "--help"});
+    const ProgramResult result = RunProgram("hullslam evaluate", {command, "--help"});
     EXPECT_NE(result.output.find("Exit codes: 0 "), std::string::npos) << result.output;
   }
 }
@@ -91,26 +88,6 @@ std::string WithoutName(std::string text, const std::string& called) {
   return at == std::string::npos ? text : text.replace(at, usage.size(), "Usage: ");
 }
 
-TEST(HullslamProgram, ACommandAndItsLinkAreTheSameProgram) {
-  for (const auto& [command, link] : kLinkedTools) {
-    const ProgramResult by_link = RunProgram(link, {"--help"});
-    const ProgramResult by_name = RunProgram("hullslam", {command, "--help"});
-    EXPECT_EQ(by_name.exit_code, 0) << command;
-    EXPECT_EQ(WithoutName(by_link.output, link),
-              WithoutName(by_name.output, std::string("hullslam ") + command));
-  }
-}
-
-TEST(HullslamProgram, ACommandAndItsLinkFailAlike) {
-  for (const auto& [command, link] : {kLinkedTools.front(), kLinkedTools.back()}) {
-    const ProgramResult by_link = RunProgram(link, {"--no-such-option"});
-    const ProgramResult by_name = RunProgram("hullslam", {command, "--no-such-option"});
-    EXPECT_EQ(by_link.exit_code, 2) << link;
-    EXPECT_EQ(by_name.exit_code, 2) << command;
-    EXPECT_EQ(by_link.errors, by_name.errors);
-  }
-}
-
 // The renderer is a file of its own, so that its libraries are loaded only when it runs.
 TEST(HullslamProgram, StartsTheProgramOfMakeSynthetic) {
   const ProgramResult itself = RunProgram("make_synthetic", {"--help"});
@@ -120,14 +97,10 @@ TEST(HullslamProgram, StartsTheProgramOfMakeSynthetic) {
   EXPECT_EQ(RunProgram("hullslam", {"make-synthetic"}).exit_code, 2);
 }
 
-TEST(HullslamProgram, IsRecognisedByTheNameOfALinkAnywhere) {
-  const TemporaryFolder folder;
-  for (const char* const link : {"check_masks", "view"}) {
-    const std::string installed = std::string("hullslam-") + link;
-    std::filesystem::create_symlink(ProgramPath("hullslam"), folder.path() / installed);
-    EXPECT_EQ(RunShell((folder.path() / installed).string() +
-                       " --help | grep -q '^Usage: " + installed + " '"),
-              0);
+// Each tool has one name. Names like `export` and `view` belong to the shell and to other programs.
+TEST(HullslamProgram, CommandsAreNoProgramsOfTheirOwn) {
+  for (const char* const former : {"check_masks", "export", "query_objects", "view"}) {
+    EXPECT_FALSE(std::filesystem::exists(ProgramPath(former))) << former;
   }
 }
 
@@ -135,7 +108,7 @@ TEST(HullslamProgram, WithoutACommandPrintsTheHelpAndRefuses) {
   const ProgramResult result = RunProgram("hullslam", {});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.output, RunProgram("hullslam", {"--help"}).output);
-  for (const auto& [command, link] : kLinkedTools) {
+  for (const char* const command : kCommands) {
     EXPECT_NE(result.output.find(std::string("  ") + command + " "), std::string::npos) << command;
   }
 }

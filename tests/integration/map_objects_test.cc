@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 // The JSON that `evaluate objects` prints for a run, with the comparison with the true objects.
 Json CompareWithTruth(const fs::path& sequence, const fs::path& run) {
   const ProgramResult result = RunProgram(
-      "evaluate",
+      "hullslam evaluate",
       {"objects", run, "--groundtruth", sequence / "groundtruth_objects.json", "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   return Json::parse(result.output);
@@ -36,8 +36,8 @@ TEST(MapObjects, EllipsoidsHaveTheTruePositionAndSize) {
   ASSERT_EQ(RunProgram("make_synthetic", {desk, "--quiet"}).exit_code, 0);
   const fs::path run = folder.path() / "run";
   const ProgramResult result =
-      RunProgram("map_objects", {desk, "--poses", desk / "groundtruth.txt", "--masks",
-                                 desk / "masks", "--output", run, "--quiet", "--debug"});
+      RunProgram("hullslam map-objects", {desk, "--poses", desk / "groundtruth.txt", "--masks",
+                                          desk / "masks", "--output", run, "--quiet", "--debug"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.errors.find("debug: object 8 (apple): mapped from 3 keyframes"),
             std::string::npos)
@@ -73,7 +73,7 @@ class MapObjectsRefuses : public ::testing::Test {
     std::vector<std::string> arguments = {sequence_.path(), "--output", folder_.path() / "out",
                                           "--poses", poses};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = RunProgram("map_objects", arguments);
+    const ProgramResult result = RunProgram("hullslam map-objects", arguments);
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_TRUE(result.errors.starts_with("error: ")) << result.errors;
     EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;

@@ -62,9 +62,9 @@ TEST_F(RgbdChanges, ASecondSessionListsWhatWasMovedTakenAndAdded) {
   const size_t gone = Counts()["gone"];
   const size_t moved = Counts()["moved"];
   EXPECT_GE(Counts()["seen_again"], 9);
-  const ProgramResult evaluation =
-      RunProgram("evaluate", {"objects", output_, "--groundtruth",
-                              after_ / "groundtruth_objects.json", "--min-masks", "10", "--json"});
+  const ProgramResult evaluation = RunProgram(
+      "hullslam evaluate", {"objects", output_, "--groundtruth",
+                            after_ / "groundtruth_objects.json", "--min-masks", "10", "--json"});
   ASSERT_EQ(evaluation.exit_code, 0) << evaluation.errors;
   const Json truth = Json::parse(evaluation.output)["groundtruth"]["changes"];
   EXPECT_EQ(truth["places_left"]["in_truth"], 6);

@@ -28,11 +28,11 @@ class QueryObjects : public ::testing::Test {
 
   ProgramResult Ask(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), folder_.path() / "run");
-    return RunProgram("query_objects", arguments);
+    return RunProgram("hullslam query", arguments);
   }
   void ExpectRefused(const std::vector<std::string>& arguments,
                      const std::vector<std::string>& parts) const {
-    const ProgramResult result = RunProgram("query_objects", arguments);
+    const ProgramResult result = RunProgram("hullslam query", arguments);
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_TRUE(result.output.empty());
     EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;
@@ -88,7 +88,7 @@ TEST_F(QueryObjects, AClassThatOnlyTheNetworkKnowsIsThereNot) {
 TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
   const std::string run = folder_.path() / "run";
   ExpectRefused({run, "unicorn"}, {"'unicorn'", "laptop"});
-  EXPECT_EQ(RunProgram("query_objects", {run, "zebra"}).exit_code, 1) << "known, but not there";
+  EXPECT_EQ(RunProgram("hullslam query", {run, "zebra"}).exit_code, 1) << "known, but not there";
   ExpectRefused({run}, {"QUESTION"});
   ExpectRefused({run, "cup", "--like", "0"}, {"expected one of"});
   ExpectRefused({run, "--within", "1"}, {"--of"});
@@ -148,12 +148,12 @@ TEST(QueryObjectsOfARun, KnowsWhatStandsOnTheTable) {
                               "--save-map", map, "--quiet"});
   ASSERT_EQ(made.exit_code, 0) << made.errors;
   const ProgramResult of_run =
-      RunProgram("query_objects", {run, "keyboard on a surface", "--json"});
+      RunProgram("hullslam query", {run, "keyboard on a surface", "--json"});
   ASSERT_EQ(of_run.exit_code, 0) << of_run.errors;
   EXPECT_EQ(Json::parse(of_run.output)["answers"][0]["class"], "keyboard");
   // The map has no ground truth, so the planes of its landmarks tell what is upwards.
   const ProgramResult of_map =
-      RunProgram("query_objects", {map, "keyboard on a surface", "--json"});
+      RunProgram("hullslam query", {map, "keyboard on a surface", "--json"});
   ASSERT_EQ(of_map.exit_code, 0) << of_map.errors;
   EXPECT_EQ(Json::parse(of_map.output)["answers"][0]["object"],
             Json::parse(of_run.output)["answers"][0]["object"]);
@@ -166,7 +166,7 @@ TEST(QueryObjectsOfARun, KnowsWhatStandsOnTheTable) {
     if (source == run) {
       question.insert(question.end(), {"--picture", picture});
     }
-    const ProgramResult by_vector = RunProgram("query_objects", question);
+    const ProgramResult by_vector = RunProgram("hullslam query", question);
     ASSERT_EQ(by_vector.exit_code, 0) << by_vector.errors;
     const Json best = Json::parse(by_vector.output)["answers"][0];
     EXPECT_EQ(best["class"], "keyboard");

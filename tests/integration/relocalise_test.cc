@@ -16,7 +16,7 @@ class Relocalise : public ::testing::Test {
   ProgramResult Run(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {sequence_.path(), "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return RunProgram("relocalise", arguments);
+    return RunProgram("hullslam relocalise", arguments);
   }
   void ExpectRefused(const std::vector<std::string>& more, const std::string& part) const {
     const ProgramResult result = Run(more);

@@ -64,14 +64,14 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
   EXPECT_EQ(parts["objects"][0]["id"], objects[0]["id"]);
 
   // A report of the files afterwards has the same objects, and is replaced by the next run.
-  const ProgramResult again = RunProgram("view", {output_, "--report", "--quiet"});
+  const ProgramResult again = RunProgram("hullslam view", {output_, "--report", "--quiet"});
   EXPECT_EQ(again.exit_code, 0) << again.errors;
   const Json later = PartsOf(output_ / "report.html");
   EXPECT_EQ(later["objects"].size(), objects.size());
   EXPECT_FALSE(later["landmarks"].contains("age"));
   EXPECT_FALSE(later["images"].empty());
 
-  const ProgramResult of_map = RunProgram("view", {map, "--report"});
+  const ProgramResult of_map = RunProgram("hullslam view", {map, "--report"});
   EXPECT_EQ(of_map.exit_code, 0) << of_map.errors;
   EXPECT_EQ(PartsOf(folder_.path() / "desk.html")["landmarks"]["total"],
             parts["landmarks"]["total"]);
@@ -94,7 +94,7 @@ TEST_F(ReportTest, ResultsAreCompleteIfItCannotBeWritten) {
 
 TEST_F(ReportTest, OtherFoldersAndFilesAreRefused) {
   const auto expect_refusal = [](const fs::path& input, const std::string& part) {
-    const ProgramResult result = RunProgram("view", {input, "--report"});
+    const ProgramResult result = RunProgram("hullslam view", {input, "--report"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
   };

@@ -128,8 +128,8 @@ TEST_F(RgbdBag, ImagesOfAChosenTopicAreFoundAgain) {
   ExpectRefusal("rgbd_bag", {bag}, {"--image-topic", "/camera/rgb/second"});
   Run("rgbd_bag", {bag, "--image-topic", "/camera/rgb/second", "--save-map", Path("two.map")},
       "two", 0);
-  const ProgramResult result =
-      RunProgram("export", {Path("two"), "--to", "nerfstudio", "--output", Path("two_nerf")});
+  const ProgramResult result = RunProgram(
+      "hullslam export", {Path("two"), "--to", "nerfstudio", "--output", Path("two_nerf")});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(fs::exists(Path("two_nerf/images")));
 }

@@ -78,8 +78,9 @@ TEST_F(RgbdIcl, TheConvertedGroundTruthIsWrittenForOtherPrograms) {
   room_.WriteIclTum(path_, kRgbdIclFrames, true);
   const ProgramResult quiet = RunWell({path_, "--quiet"});
   EXPECT_EQ(quiet.output + quiet.errors, "");
-  const ProgramResult result = RunProgram("evaluate", {"trajectory", output_ / "groundtruth.txt",
-                                                       output_ / "trajectory.txt", "--json"});
+  const ProgramResult result =
+      RunProgram("hullslam evaluate",
+                 {"trajectory", output_ / "groundtruth.txt", output_ / "trajectory.txt", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_LT(ReadTrajectory(output_ / "groundtruth.txt").back().timestamp, 1.0);
   const Json summary = Json::parse(ReadFile(output_ / "summary.json"));

@@ -40,7 +40,7 @@ class RunEnd : public ::testing::Test {
   }
 
   ProgramResult MapObjects(const fs::path& poses, const fs::path& output) const {
-    return RunProgram("map_objects",
+    return RunProgram("hullslam map-objects",
                       {path_, "--poses", poses, "--masks", masks_, "--output", output, "--quiet"});
   }
 
@@ -86,30 +86,33 @@ TEST_F(RunEnd, AFolderNeverMixesTwoRuns) {
   ASSERT_EQ(Run({}).exit_code, 0);
   EXPECT_FALSE(fs::exists(output_ / "objects.json"));
   ExpectResults();
-  ExpectError(RunProgram("evaluate", {"objects", output_}), 2,
+  ExpectError(RunProgram("hullslam evaluate", {"objects", output_}), 2,
               {output_.string(), "no masks", "--masks"});
 }
 
 TEST_F(RunEnd, TheOutputFolderIsApartFromTheInputs) {
   const auto images = ReadFolder(sequence_.path() / "rgb");
   output_ = sequence_.path() / "rgb";
-  ExpectError(RunProgram("check_masks", {path_, masks_, "--output", output_, "--every", "1"}), 2,
-              {"inside", path_});
+  ExpectError(
+      RunProgram("hullslam check-masks", {path_, masks_, "--output", output_, "--every", "1"}), 2,
+      {"inside", path_});
   ExpectError(Run({}), 2, {"inside", path_});
   EXPECT_EQ(ReadFolder(sequence_.path() / "rgb"), images);
   output_ = masks_;
   ExpectError(Run({"--masks", masks_}), 2, {"contains", masks_});
   output_ = folder_.path() / "images";  // images that are in no folder of this run
   fs::copy(sequence_.path() / "rgb", output_);
-  ExpectError(RunProgram("check_masks", {path_, masks_, "--output", output_, "--every", "1"}), 2,
-              {"'0", "not from a former run"});
+  ExpectError(
+      RunProgram("hullslam check-masks", {path_, masks_, "--output", output_, "--every", "1"}), 2,
+      {"'0", "not from a former run"});
   ExpectError(Run({}), 2, {"'0", "not from a former run"});
   EXPECT_EQ(ReadFolder(output_), images);
 }
 
 TEST_F(RunEnd, PicturesReplaceFormerPicturesOnly) {
   const auto draw = [&](const char* every) {
-    return RunProgram("check_masks", {path_, masks_, "--output", output_, "--every", every});
+    return RunProgram("hullslam check-masks",
+                      {path_, masks_, "--output", output_, "--every", every});
   };
   ASSERT_EQ(draw("4").exit_code, 0);
   ASSERT_EQ(draw("6").exit_code, 0);
@@ -139,7 +142,7 @@ TEST_F(RunEnd, TheDefaultFoldersOfThePrograms) {
   const std::string setup = "cd '" + empty.string() + "'; ";
   ASSERT_EQ(RunProgram("rgbd_tum", {path_, "--quiet"}, setup).exit_code, 0);
   ASSERT_EQ(
-      RunProgram("map_objects",
+      RunProgram("hullslam map-objects",
                  {path_, "--poses", "out/trajectory.txt", "--masks", masks_, "--quiet"}, setup)
           .exit_code,
       0);
@@ -185,22 +188,23 @@ TEST_F(RunEnd, AReportThatCannotBePrintedIsAFailure) {
     fs::remove_all(output_);
   }
   EXPECT_EQ(RunWith(">/dev/full 2>/dev/null --quiet"), 0) << "nothing is printed";
-  for (const char* const program :
-       {"rgbd_tum", "map_objects", "check_masks", "make_synthetic", "evaluate"}) {
-    EXPECT_EQ(RunShell(ProgramPath(program).string() + " --help >/dev/full 2>/dev/null"), 1)
+  for (const char* const program : {"rgbd_tum", "hullslam map-objects", "hullslam check-masks",
+                                    "make_synthetic", "hullslam evaluate"}) {
+    EXPECT_EQ(RunShell(ProgramFolder().string() + "/" + program + " --help >/dev/full 2>/dev/null"),
+              1)
         << program;
   }
 }
 
 TEST(Programs, HelpNamesTheExitCodes) {
-  for (const char* const program :
-       {"rgbd_tum", "map_objects", "check_masks", "make_synthetic", "evaluate"}) {
+  for (const char* const program : {"rgbd_tum", "hullslam map-objects", "hullslam check-masks",
+                                    "make_synthetic", "hullslam evaluate"}) {
     const ProgramResult help = RunProgram(program, {"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.output.find("Exit codes: 0 "), std::string::npos) << program;
   }
   for (const char* const command : {"trajectory", "objects"}) {
-    const ProgramResult help = RunProgram("evaluate", {command, "--help"});
+    const ProgramResult help = RunProgram("hullslam evaluate", {command, "--help"});
     EXPECT_NE(help.output.find("Exit codes: 0 "), std::string::npos) << command;
   }
 }
@@ -318,7 +322,7 @@ TEST_F(RunEnd, MessagesHaveNoControlCharacters) {
     classes += "other\n";
   }
   folder_.Write("masks/classes.txt", classes + "cup\x1b]0;x\x07\rforged\n");
-  const ProgramResult masks = RunProgram("check_masks", {path_, masks_, "--quiet"});
+  const ProgramResult masks = RunProgram("hullslam check-masks", {path_, masks_, "--quiet"});
   EXPECT_NE(masks.output.find("cup?]0;x??forged"), std::string::npos) << masks.output;
   expect_clean(masks.output);
   const ProgramResult run = Run({"--masks", masks_, "--debug"});
@@ -341,7 +345,7 @@ TEST_F(RunEnd, DoubtfulInputIsReported) {
   const fs::path poses = sequence_.path() / "groundtruth.txt";
   ExpectError(Run({"--poses", poses, "--masks", masks_, "--quiet", "--set", classes, "--set",
                    "DepthMapFactor=250000", "--overwrite"},
-                  "map_objects"),
+                  "hullslam map-objects"),
               0, {"'persn'", "0.02 m"});
 }
 

@@ -52,7 +52,8 @@ TEST_F(SyntheticSuite, SequencesOfBothFormsAreReadByTheirPrograms) {
     EXPECT_EQ(trajectory["tracked"], 6);
     EXPECT_EQ(trajectory["pairs"], dataset == "icl" ? 5 : 6);
     EXPECT_LT(trajectory["ate_rmse_m"].get<double>(), 0.01);
-    const ProgramResult check = RunProgram("check_masks", {path("tum_folder"), path("masks")});
+    const ProgramResult check =
+        RunProgram("hullslam check-masks", {path("tum_folder"), path("masks")});
     EXPECT_EQ(check.exit_code, 0) << check.errors;
     const ProgramResult mono =
         RunProgram("mono_" + dataset, {path("folder"), "--output", run + "-mono", "--quiet"});

@@ -37,11 +37,11 @@ class TrainVocabularyProgram : public ::testing::Test {
 
   ProgramResult Train(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--branching", "5", "--levels", "3", "--features", "300"});
-    return RunProgram("train_vocabulary", arguments);
+    return RunProgram("hullslam train-vocabulary", arguments);
   }
 
   void ExpectRefused(const std::vector<std::string>& arguments, const std::string& why) const {
-    const ProgramResult result = RunProgram("train_vocabulary", arguments);
+    const ProgramResult result = RunProgram("hullslam train-vocabulary", arguments);
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
     EXPECT_FALSE(fs::exists(Path("v.bow")));
@@ -101,7 +101,7 @@ TEST_F(TrainVocabularyProgram, BadInputIsRefused) {
 
 TEST_F(TrainVocabularyProgram, AnInterruptWritesNothing) {
   WriteImages("a", 300);
-  RunningProgram program("train_vocabulary",
+  RunningProgram program("hullslam train-vocabulary",
                          {Path("a"), "--output", Path("v.bow"), "--threads", "1"});
   EXPECT_NE(program.ReadLine().find("/300"), std::string::npos);  // a tenth is done
   program.Send(SIGINT);

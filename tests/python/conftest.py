@@ -19,11 +19,13 @@ CAMERA = {"fx": 260.0, "fy": 260.0, "cx": 159.5, "cy": 119.5, "bf": 20.0, "width
 
 
 def run_program(name, *arguments):
-    """Runs a program of HullSLAM and returns what it printed. Skips the test if it is not built."""
-    program = BIN / name
+    """Runs a program of HullSLAM, such as "rgbd_tum" or "hullslam view", and returns what it printed.
+    Skips the test if it is not built."""
+    program, *command = name.split()
+    program = BIN / program
     if not program.exists():
         pytest.skip(f"{program} is not built")
-    result = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
+    result = subprocess.run([program, *command, *map(str, arguments)], capture_output=True, text=True,
                             check=False)
     assert result.returncode == 0, result.stderr
     return result.stdout

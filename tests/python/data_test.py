@@ -81,7 +81,7 @@ def test_errors_of_a_trajectory_of_another_scale():
 
 def test_errors_are_those_of_the_program(desk, tmp_path):
     run_program("rgbd_tum", desk, "--output", tmp_path / "out", "--quiet")
-    printed = run_program("evaluate", "trajectory", desk / "groundtruth.txt",
+    printed = run_program("hullslam evaluate", "trajectory", desk / "groundtruth.txt",
                           tmp_path / "out" / "trajectory.txt", "--json")
     errors = hullslam.evaluate_trajectory(desk / "groundtruth.txt",
                                           tmp_path / "out" / "trajectory.txt")

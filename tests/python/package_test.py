@@ -165,3 +165,9 @@ def test_the_installed_package_can_be_imported(tmp_path):
     assert printed.splitlines() == [str(package), "(640, 480)"]
     assert {path.name for path in package.parent.iterdir()} >= {"py.typed", "_core.pyi",
                                                                 "_settings.pyi", "_settings.py"}
+
+
+def test_without_numpy_the_error_names_it():
+    program = ("import sys; sys.modules['numpy'] = None\n"
+               "try:\n    import hullslam\nexcept ImportError as error:\n    print(error)\n")
+    assert "hullslam needs numpy, which " in run("-c", program)

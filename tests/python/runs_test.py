@@ -72,7 +72,7 @@ def test_reports_are_written(run_folder, tmp_path):
 def test_exports_are_those_of_the_program(run_folder, tmp_path):
     told = hullslam.export(run_folder, "kitti", tmp_path / "poses.txt")
     assert isinstance(told, str)
-    run_program("export", run_folder, "--to", "kitti", "--output", tmp_path / "same.txt")
+    run_program("hullslam export", run_folder, "--to", "kitti", "--output", tmp_path / "same.txt")
     assert (tmp_path / "poses.txt").read_bytes() == (tmp_path / "same.txt").read_bytes()
     with pytest.raises(hullslam.InputError, match="poses.txt"):
         hullslam.export(run_folder, "kitti", tmp_path / "poses.txt")

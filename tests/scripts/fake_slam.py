@@ -59,10 +59,10 @@ if lost:
     sys.exit(1)
 """
 
-# `evaluate`: the error is that which a run has written into its trajectory.
+# `hullslam evaluate`: the error is that which a run has written into its trajectory.
 EVALUATE = r"""#!/usr/bin/python3
 import json, pathlib, sys
-arguments = sys.argv[1:]
+arguments = sys.argv[2:]
 if arguments[0] == "trajectory":
     lines = pathlib.Path(arguments[2]).read_text().split("\n")
     if len(lines) < 2:
@@ -160,7 +160,7 @@ def write_programs(folder):
     folder.mkdir(parents=True)
     renderer = MAKE_SYNTHETIC.replace("FOLDER", json.dumps(str(pathlib.Path(__file__).parent)))
     for name, text in (("rgbd_tum", SLAM), ("stereo_folder", SLAM), ("mono_tum", SLAM), ("rgbd_icl", SLAM),
-                       ("mono_icl", SLAM), ("evaluate", EVALUATE),
+                       ("mono_icl", SLAM), ("hullslam", EVALUATE),
                        ("make_synthetic", renderer)):
         (folder / name).write_text(text)
         (folder / name).chmod(0o755)

@@ -136,7 +136,7 @@ class ForeignReaders(unittest.TestCase):
     def test_gltf_is_valid(self):
         for source, form in ((self.out, "ellipsoids"), (self.folder / "desk.map", "boxes")):
             file = self.folder / f"{form}.glb"
-            subprocess.run([BIN / "export", source, "--to", "gltf", "--output", file,
+            subprocess.run([BIN / "hullslam", "export", source, "--to", "gltf", "--output", file,
                             "--objects-as", form], check=True, capture_output=True)
             issues = run_with_node("validate_gltf.cjs", file)
             self.assertEqual((issues["numErrors"], issues["numWarnings"]), (0, 0), issues["messages"])

@@ -14,9 +14,15 @@ PATIENCE = 300  # s; other tests run at the same time
 ADDRESS = re.compile(r"open this address in a browser: (http://\S+)")
 
 
+def command_of(name):
+    """The words of a program, such as rgbd_tum, or of a command of one, such as `hullslam view`."""
+    program_name, *command = name.split()
+    return [str(BIN / program_name), *command]
+
+
 def program(name, *arguments, code=0):
     """Runs a program to its end and returns its texts on stdout and stderr."""
-    result = subprocess.run([str(BIN / name), *map(str, arguments)], capture_output=True, text=True,
+    result = subprocess.run([*command_of(name), *map(str, arguments)], capture_output=True, text=True,
                             check=False, timeout=PATIENCE)
     if result.returncode != code:
         raise AssertionError(f"{name}: exit code {result.returncode}, expected {code}: "
@@ -28,7 +34,7 @@ class LiveRun:
     """A program that serves a page at an address that it prints."""
 
     def __init__(self, name, *arguments):
-        self.process = subprocess.Popen([str(BIN / name), *map(str, arguments)],
+        self.process = subprocess.Popen([*command_of(name), *map(str, arguments)],
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.lines = []
         for line in self.process.stdout:

@@ -123,7 +123,7 @@ class LiveViewTest(unittest.TestCase):
             _, errors = program("rgbd_tum", self.desk, "--view", port, "--output", output, code=2)
             self.assertIn(f"cannot listen on 127.0.0.1:{port}", errors)
             self.assertFalse(output.exists())
-            _, errors = program("view", self.plain, "--port", port, code=2)
+            _, errors = program("hullslam view", self.plain, "--port", port, code=2)
             self.assertIn(f"127.0.0.1:{port}", errors)
         for arguments, part in ((["--view", "99999"], "99999"), (["--view=x"], "x"),
                                 (["--view", "0", "--view-address", "nowhere"], "nowhere")):
@@ -147,14 +147,14 @@ class LiveViewTest(unittest.TestCase):
 
     def test_a_finished_run_and_a_map_are_served_until_ctrl_c(self):
         for path in (self.plain, self.save_map()):
-            run = self.start("view", path, "--port", "0")
+            run = self.start("hullslam view", path, "--port", "0")
             status, page = run.ask("GET", "/")
             self.assertEqual(status, 200)
             self.assertIn("hullslam-data", page)
             self.assertEqual(run.ask("GET", "/", Host="evil.example")[0], 403)
             run.process.send_signal(signal.SIGINT)
             self.assertEqual(run.wait()[0], 0)
-        _, errors = program("view", self.folder / "nothing", "--port", "0", code=2)
+        _, errors = program("hullslam view", self.folder / "nothing", "--port", "0", code=2)
         self.assertIn("nothing", errors)
 
     def save_map(self):

@@ -185,18 +185,18 @@ class PlotRunTest(unittest.TestCase):
             self.assert_refused(self.plot(), "report.html")
 
     def stand_in(self, body):
-        """A program `view` with the given body. "$1" is the run, "$4" the page."""
+        """A program `hullslam` with the given body. "$2" is the run, "$5" the page."""
         programs = self.top / "bin"
         programs.mkdir(exist_ok=True)
-        (programs / "view").write_text(f"#!/bin/bash\n{body}\n")
-        (programs / "view").chmod(0o755)
+        (programs / "hullslam").write_text(f"#!/bin/bash\n{body}\n")
+        (programs / "hullslam").chmod(0o755)
         (self.top / "page").write_text(page_of(parts()))
         patch = unittest.mock.patch.object(plot_run, "programs_folder", lambda: programs)
         patch.start()
         self.addCleanup(patch.stop)
 
     def test_view_makes_a_missing_report(self):
-        self.stand_in(f'[ "$1" = {self.dir} ] && [ "$2" = --report ] && cp {self.top}/page "$4"')
+        self.stand_in(f'[ "$1" = view ] && [ "$2" = {self.dir} ] && [ "$3" = --report ] && cp {self.top}/page "$5"')
         self.assert_drawn(self.plot())
 
     def test_view_gets_the_given_ground_truth_and_sequence(self):
@@ -204,7 +204,7 @@ class PlotRunTest(unittest.TestCase):
         (self.dir / "groundtruth.txt").write_text("old")
         (self.dir / "map.ply").write_text("points")
         (self.top / "truth").write_text("new")
-        self.stand_in(f'cp $1/* {self.top}/bin && cp {self.top}/page "$4"')
+        self.stand_in(f'cp $2/* {self.top}/bin && cp {self.top}/page "$5"')
         self.assert_drawn(self.plot("--groundtruth", self.top / "truth", "--sequence", self.top))
         given = {path.name: path.read_text() for path in (self.top / "bin").iterdir()}
         self.assertEqual((given["groundtruth.txt"], given["map.ply"]), ("new", "points"))
@@ -217,8 +217,8 @@ class PlotRunTest(unittest.TestCase):
     def test_the_error_of_view_is_shown(self):
         self.stand_in('echo "error: desk/summary.json: not valid" >&2; exit 2')
         self.assert_refused(self.plot(), "error: desk/summary.json: not valid")
-        (self.top / "bin" / "view").unlink()
-        self.assert_refused(self.plot(), "bin/view: no such program")
+        (self.top / "bin" / "hullslam").unlink()
+        self.assert_refused(self.plot(), "bin/hullslam: no such program")
 
     def test_as_a_program(self):
         (self.dir / "report.html").write_text(page_of(parts()))

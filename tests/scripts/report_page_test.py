@@ -30,7 +30,7 @@ def find_data(name):
 
 
 def program(name, *arguments):
-    result = subprocess.run([str(BIN / name), *map(str, arguments)], capture_output=True, text=True,
+    result = subprocess.run([str(BIN / name.split()[0]), *name.split()[1:], *map(str, arguments)], capture_output=True, text=True,
                             check=False)
     if result.returncode != 0:
         raise AssertionError(f"{name}: {result.stderr}")
@@ -182,7 +182,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(without, 0)
 
     def test_a_map_shows_its_landmarks_in_tiles_of_usual_size(self):
-        program("view", self.folder / "desk.map", "--report", "--quiet")
+        program("hullslam view", self.folder / "desk.map", "--report", "--quiet")
         page = self.open(self.folder / "desk.html")
         page.size(1400, 900)
         self.assertIn("landmarks", page.text("#tiles"))
@@ -221,9 +221,9 @@ class ReportPage(unittest.TestCase):
     def test_reports_of_other_runs_draw(self):
         mono, objects = self.folder / "mono", self.folder / "objects"
         program("mono_tum", self.desk, "--output", mono, "--report", "--quiet")
-        program("map_objects", self.desk, "--poses", self.desk / "groundtruth.txt", "--masks",
+        program("hullslam map-objects", self.desk, "--poses", self.desk / "groundtruth.txt", "--masks",
                 self.desk / "masks", "--output", objects, "--report", "--quiet")
-        program("view", self.folder / "desk.map", "--report", "--quiet")
+        program("hullslam view", self.folder / "desk.map", "--report", "--quiet")
         for report in (mono / "report.html", objects / "report.html", self.folder / "desk.html"):
             with self.subTest(report=report.name):
                 self.expect_good(self.open(report))
@@ -231,7 +231,7 @@ class ReportPage(unittest.TestCase):
     def test_reports_of_a_room_and_of_a_recorded_sequence_draw(self):
         room, run = self.folder / "room", self.folder / "room_run"
         program("make_synthetic", room, "--scene", "room", "--frames", 12, "--quiet")
-        program("map_objects", room, "--poses", room / "groundtruth.txt", "--masks", room / "masks",
+        program("hullslam map-objects", room, "--poses", room / "groundtruth.txt", "--masks", room / "masks",
                 "--output", run, "--report", "--quiet")
         self.expect_good(self.open(run / "report.html"))
         recorded = find_data("fr1_xyz")

@@ -23,7 +23,7 @@ class StepsTest(unittest.TestCase):
         for name in ("common.sh", "demo.sh", "run_demo.sh", "test.sh"):
             shutil.copy(SCRIPTS / name, self.top / "scripts")
         for name in ("scripts/setup.sh", "scripts/plot_run.py", "path/cmake", "path/ctest",
-                     "build/release/bin/rgbd_tum", "build/release/bin/evaluate"):
+                     "build/release/bin/rgbd_tum", "build/release/bin/hullslam"):
             self.stand_in(name)
         self.stand_in("build/release/bin/make_synthetic", 'mkdir "$1" && touch "$1/rgb.txt"')
 
@@ -44,13 +44,13 @@ class StepsTest(unittest.TestCase):
         result, calls = self.run_script("demo.sh")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual([call.split()[0] for call in calls],
-                         ["setup.sh", "cmake", "cmake", "make_synthetic", "rgbd_tum", "evaluate",
+                         ["setup.sh", "cmake", "cmake", "make_synthetic", "rgbd_tum", "hullslam",
                           "plot_run.py"])
         built = set(calls[2].split("--target ")[1].split())
-        self.assertEqual(built, {"rgbd_tum", "evaluate", "make_synthetic"})
+        self.assertEqual(built, {"rgbd_tum", "hullslam_program", "make_synthetic"})
         self.assertEqual(calls[-3], "rgbd_tum build/demo/desk --masks build/demo/desk/masks "
                                     "--output build/demo/run --report")
-        self.assertEqual(calls[-2], "evaluate objects build/demo/run --groundtruth "
+        self.assertEqual(calls[-2], "hullslam evaluate objects build/demo/run --groundtruth "
                                     "build/demo/desk/groundtruth_objects.json")
         self.assertEqual(calls[-1], "plot_run.py build/demo/run --overlay 6")
         self.assertRegex(result.stdout.splitlines()[-1],

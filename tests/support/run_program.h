@@ -3,6 +3,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -30,8 +31,14 @@ inline int RunShell(const std::string& command) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// Runs a program of this build and waits for it to end. `setup` holds shell commands to run before
-// it, such as "ulimit -f 8;".
+// The shell command of a program, such as "rgbd_tum", or of a command of one, "hullslam view".
+inline std::string ShellCommand(const std::string& name) {
+  const size_t space = std::min(name.find(' '), name.size());
+  return '\'' + ProgramPath(name.substr(0, space)).string() + '\'' + name.substr(space);
+}
+
+// Runs a program of this build, or a command of one, and waits for it to end. `setup` holds shell
+// commands to run before it, such as "ulimit -f 8;".
 inline ProgramResult RunProgram(const std::string& name, const std::vector<std::string>& arguments,
                                 const std::string& setup = "") {
   const TemporaryFolder folder;
@@ -39,7 +46,7 @@ inline ProgramResult RunProgram(const std::string& name, const std::vector<std::
     std::ifstream stream(folder.path() / file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
-  std::string command = setup + '\'' + ProgramPath(name).string() + '\'';
+  std::string command = setup + ShellCommand(name);
   for (const std::string& argument : arguments) {
     command += " '" + argument + '\'';
   }

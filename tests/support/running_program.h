@@ -16,8 +16,8 @@
 
 namespace hullslam {
 
-// A program of this build in a process of its own, whose output the test can read line by line
-// while it runs.
+// A program of this build, or a command of one ("hullslam view"), in a process of its own, whose
+// output the test can read line by line while it runs.
 class RunningProgram {
  public:
   // The program starts with the signal `ignored` ignored, as with nohup; 0: no signal is ignored.
@@ -26,7 +26,11 @@ class RunningProgram {
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
       throw std::runtime_error("cannot create a pipe");
     }
-    arguments.insert(arguments.begin(), ProgramPath(name).string());
+    const size_t space = std::min(name.find(' '), name.size());
+    if (space < name.size()) {
+      arguments.insert(arguments.begin(), name.substr(space + 1));
+    }
+    arguments.insert(arguments.begin(), ProgramPath(name.substr(0, space)).string());
     std::vector<char*> words;
     for (std::string& argument : arguments) {
       words.push_back(argument.data());

@@ -24,11 +24,8 @@ struct Command {
   const char* wish;     // the heading in `hullslam --help`: why a user needs it
   const char* name;     // "check-masks"
   const char* meaning;  // one line for --help
-  // The name under which the command is a program of its own, "check_masks". Null if there is none:
-  // only tools that were programs before they were commands have one.
-  const char* program;
-  // Null if the program is a file of its own in the folder of hullslam, because it needs libraries
-  // that the other tools do not need. Then the command starts this program.
+  // Null if the command is a program of its own in the folder of hullslam, because it needs
+  // libraries that the other tools do not need: make-synthetic starts make_synthetic.
   int (*run)(int argc, char** argv);
 };
 

@@ -23,20 +23,6 @@
 namespace hullslam {
 namespace {
 
-// The command of the link through which the program was called; null if it was not called so.
-const Command* FindByLink(std::string_view called) {
-  constexpr std::string_view kInstalledPrefix = "hullslam-";
-  if (called.starts_with(kInstalledPrefix)) {
-    called.remove_prefix(kInstalledPrefix.size());
-  }
-  for (const Command& command : Commands()) {
-    if (command.program != nullptr && called == command.program) {
-      return &command;
-    }
-  }
-  return nullptr;
-}
-
 const Command* FindByName(std::string_view name) {
   for (const Command& command : Commands()) {
     if (name == command.name) {
@@ -46,17 +32,18 @@ const Command* FindByName(std::string_view name) {
   return nullptr;
 }
 
-// Whether the user who wrote `word` may mean this name of a command or of its program.
-bool IsMeant(std::string_view word, const char* name) {
-  return name != nullptr && !word.empty() &&
-         (std::string_view(name).starts_with(word) || IsMisspelt(word, name));
+// Whether the user who wrote `word` may mean this command. Some tools were programs with the names
+// of their files, such as check_masks and query_objects.
+bool IsMeant(std::string_view word, std::string_view name) {
+  return !word.empty() &&
+         (name.starts_with(word) || IsMisspelt(word, name) || word.starts_with(name));
 }
 
 // The error about a word that is no command. It names the command that the user may have meant.
 [[noreturn]] void RefuseCommand(std::string_view word) {
   std::string nearest;
   for (const Command& command : Commands()) {
-    if (IsMeant(word, command.name) || IsMeant(word, command.program)) {
+    if (IsMeant(word, command.name)) {
       nearest = fmt::format("; did you mean {}?", command.name);
       break;
     }
@@ -67,7 +54,9 @@ bool IsMeant(std::string_view word, const char* name) {
 
 // Starts the program of a command in place of this one.
 [[noreturn]] void StartProgram(const Command& command, std::vector<char*> words) {
-  const auto file = std::filesystem::read_symlink("/proc/self/exe").parent_path() / command.program;
+  std::string name = command.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  const auto file = std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
   words.push_back(nullptr);
   ::execv(file.c_str(), words.data());
   throw std::system_error(errno, std::generic_category(), file.string());
@@ -112,9 +101,6 @@ int RunWithoutCommand(int argc, char** argv) {
 
 int RunHullslam(int argc, char** argv) {
   const std::string called = std::filesystem::path(argc > 0 ? argv[0] : "").filename();
-  if (const Command* const linked = FindByLink(called)) {
-    return RunCommand(*linked, called, argc - 1, argv + 1);
-  }
   if (argc < 2 || IsOwnOption(argv[1])) {
     return RunWithoutCommand(argc, argv);
   }
