@@ -48,6 +48,7 @@ bool ProtobufReader::Next() {
   const uint64_t key = TakeVarint();
   field_ = key >> 3U;
   number_ = 0;
+  has_bytes_ = (key & 7U) == 2;
   value_ = {};
   switch (key & 7U) {
     case 0:

@@ -23,6 +23,7 @@ class ProtobufReader {
   uint64_t number() const { return number_; }
   // The value of a field that is a text, a message or a packed list; empty for other fields.
   std::string_view bytes() const { return value_; }
+  bool has_bytes() const { return has_bytes_; }  // the field is of these
 
  private:
   std::string_view Take(uint64_t count);
@@ -33,6 +34,7 @@ class ProtobufReader {
   std::string name_;
   uint64_t field_ = 0;
   uint64_t number_ = 0;
+  bool has_bytes_ = false;
   std::string_view value_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <opencv2/core/mat.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,13 @@ struct NetworkOutput {
   cv::Mat values;  // CV_32F, with the dimensions of the output
 };
 
-// A network that OpenCV runs. The class that implements it is in a shared library of its own
-// (open_network.h).
+// OpenCV cannot read or run a network. The message is a reason for a user.
+class NetworkError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A network that OpenCV runs.
 class Network {
  public:
   Network() = default;
@@ -23,11 +29,9 @@ class Network {
   Network& operator=(const Network&) = delete;
 
   // `input` has the dimensions 1 x channels x height x width. The outputs are in the order of the
-  // file. Throws cv::Exception if OpenCV cannot run the network with this size.
+  // file. Throws NetworkError if OpenCV cannot run the network with this input; it can be run again
+  // with another one.
   virtual std::vector<NetworkOutput> Run(const cv::Mat& input) = 0;
 };
-
-// The function of the shared library, which has this name there. `bytes` is a file of ONNX.
-extern "C" Network* HullslamMakeNetwork(const char* bytes, size_t size);
 
 }  // namespace hullslam

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <string_view>
 
 #include "files/protobuf_reader.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
+#include "segmentation/onnx_graph.h"
 #include "util/counted.h"
 #include "util/printable.h"
 
@@ -64,39 +64,13 @@ OnnxValue ReadValue(std::string_view message) {
   return value;
 }
 
-// What is read of a TensorProto: its name, and the file in which its values are.
-struct Weights {
-  std::string name;
-  std::optional<std::string> file;
-};
-
-Weights ReadWeights(std::string_view message) {
-  Weights weights;
-  ProtobufReader fields(message, "the file");
-  while (fields.Next()) {
-    if (fields.field() == 8) {
-      weights.name = fields.bytes();
-    } else if (fields.field() == 13) {
-      const auto [key, value] = ReadEntry(fields.bytes());
-      if (key == "location") {
-        weights.file = value;
-      }
-    }
-  }
-  return weights;
-}
-
 // GraphProto.
-void ReadGraph(std::string_view message, OnnxFile& file, std::set<std::string>& weight_files) {
+void ReadGraph(std::string_view message, OnnxFile& file) {
   std::set<std::string> weights;
   ProtobufReader fields(message, "the file");
   while (fields.Next()) {
     if (fields.field() == 5) {
-      Weights read = ReadWeights(fields.bytes());
-      weights.insert(std::move(read.name));
-      if (read.file) {
-        weight_files.insert(*read.file);
-      }
+      weights.emplace(FindField(fields.bytes(), 8));
     } else if (fields.field() == 11) {
       file.inputs.push_back(ReadValue(fields.bytes()));
     } else if (fields.field() == 12) {
@@ -107,11 +81,11 @@ void ReadGraph(std::string_view message, OnnxFile& file, std::set<std::string>& 
 }
 
 // ModelProto.
-void ReadModel(OnnxFile& file, std::set<std::string>& weight_files) {
+void ReadModel(OnnxFile& file) {
   ProtobufReader fields(file.bytes, "the file");
   while (fields.Next()) {
     if (fields.field() == 7) {
-      ReadGraph(fields.bytes(), file, weight_files);
+      ReadGraph(fields.bytes(), file);
     } else if (fields.field() == 14) {
       file.metadata.insert(ReadEntry(fields.bytes()));
     }
@@ -138,12 +112,22 @@ std::string Guess(std::string_view bytes) {
 
 OnnxFile ReadOnnx(const std::filesystem::path& path) {
   OnnxFile file{.bytes = ReadFile(path, kMostBytes), .inputs = {}, .outputs = {}, .metadata = {}};
-  std::set<std::string> weight_files;
   try {
-    ReadModel(file, weight_files);
+    ReadModel(file);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {} ({}), expected a network in ONNX", path.string(),
                                  Guess(file.bytes), error.what()));
+  }
+  std::set<std::string> weight_files;
+  try {
+    for (ProtobufReader fields(file.bytes, "the file"); fields.Next();) {
+      if (fields.field() == 7) {
+        CheckGraph(fields.bytes(), weight_files);
+      }
+    }
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}; expected a network whose parts fit together",
+                                 path.string(), error.what()));
   }
   if (!weight_files.empty()) {
     constexpr size_t kShown = 200;  // bytes of a name, which may be anything in a broken file

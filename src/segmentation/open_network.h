@@ -2,16 +2,17 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
+#include <string>
 
 #include "segmentation/network.h"
 
 namespace hullslam {
 
-// Makes the network of the bytes of a file of ONNX. OpenCV's module dnn and the libraries that it
-// needs are loaded at the first call: if programs were linked with them, each start would take
-// longer. Throws cv::Exception if OpenCV cannot read the file, InputError if HullSLAM was built
-// without HULLSLAM_WITH_SEGMENTATION, and std::runtime_error if a library is missing.
-std::unique_ptr<Network> OpenNetwork(std::string_view bytes);
+// Opens the network in a file of ONNX with these bytes. OpenCV reads and runs it in a program of
+// its own (network_program/), so a network with which OpenCV crashes ends that program only, and a
+// program that makes no masks does not load OpenCV's module dnn. `threads` is how many OpenCV uses;
+// 0: as many as it has. Throws NetworkError if OpenCV cannot read the network, and
+// std::runtime_error if the program cannot be started.
+std::unique_ptr<Network> OpenNetwork(std::string bytes, int threads = 0);
 
 }  // namespace hullslam

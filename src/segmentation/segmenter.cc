@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <new>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <utility>
 
+#include "files/content_hash.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_classes.h"
@@ -54,13 +54,22 @@ std::optional<cv::Size> DeclaredSize(const fs::path& path, const OnnxFile& file)
 }
 
 // Names from the user or the file; absent if neither gives them.
-std::optional<std::vector<std::string>> FindNames(const OnnxFile& file,
+std::optional<std::vector<std::string>> FindNames(const fs::path& path, const OnnxFile& file,
                                                   const SegmenterOptions& options) {
   if (!options.names.empty()) {
     return ReadClassNames(options.names);
   }
-  const auto names = file.metadata.find("names");
-  return names != file.metadata.end() ? ParseClassNames(names->second) : std::nullopt;
+  const auto found = file.metadata.find("names");
+  if (found == file.metadata.end()) {
+    return std::nullopt;
+  }
+  const std::string source = path.string() + ": the metadata 'names' (--names FILE gives others)";
+  std::optional<std::vector<std::string>> names = ParseClassNames(found->second);
+  if (!names) {
+    throw InputError(source + ": has no list of names, expected one as Ultralytics writes it");
+  }
+  CheckClassNames(source, *names);
+  return names;
 }
 
 std::vector<std::string> ChooseNames(const fs::path& path, size_t class_count,
@@ -96,14 +105,11 @@ std::vector<bool> ChooseClasses(const std::vector<std::string>& names,
 }
 
 // Reports that OpenCV cannot do something with the network.
-[[noreturn]] void Fail(const fs::path& path, const char* what, const cv::Exception& error) {
-  if (error.code == cv::Error::StsNoMem) {
-    throw std::bad_alloc();
-  }
+[[noreturn]] void Fail(const fs::path& path, const char* what, const NetworkError& error) {
   throw InputError(fmt::format(
       "{}: OpenCV {} cannot {} this network ({}), expected one that scripts/prepare_network.py has "
       "prepared (docs/segmentation.md)",
-      path.string(), CV_VERSION, what, Printable(error.err)));
+      path.string(), CV_VERSION, what, Printable(error.what())));
 }
 
 }  // namespace
@@ -115,16 +121,17 @@ class Segmenter::Implementation {
     RequireComponent("SEGMENTATION", path.string() + ": is a network for masks");
     CheckOptions();
     OnnxFile file = ReadOnnx(path);
+    hash_ = ContentHash(file.bytes.data(), file.bytes.size());
     declared_ = DeclaredSize(path, file);
-    const std::optional<std::vector<std::string>> names = FindNames(file, options);
+    const std::optional<std::vector<std::string>> names = FindNames(path, file, options);
     known_classes_ = names ? std::optional(names->size()) : std::nullopt;
     try {
-      network_ = OpenNetwork(file.bytes);
-    } catch (const cv::Exception& error) {
+      network_ = OpenNetwork(std::move(file.bytes),
+                             options_.threads > 0 ? options_.threads : cv::getNumThreads());
+    } catch (const NetworkError& error) {
       Fail(path_, "read", error);
     }
-    const cv::Size first = declared_.value_or(InputSize({4, 3}, kDefaultSize));
-    layout_ = RunAt(cv::Mat(first, CV_8UC3, cv::Scalar::all(0)), first).layout;
+    layout_ = TryOut();
     if (!layout_.prototypes && !options_.use_boxes) {
       throw InputError(fmt::format(
           "{}: finds boxes, no masks ({}); expected a network for segmentation, or --boxes to use "
@@ -138,10 +145,8 @@ class Segmenter::Implementation {
   std::vector<InstanceMask> Segment(const cv::Mat& image) {
     Check(image.depth() == CV_8U && image.channels() != 2 && image.channels() <= 4,
           "the image is neither CV_8UC3 nor CV_8UC4 nor CV_8UC1");
-    if (options_.threads > 0) {
-      cv::setNumThreads(options_.threads);
-    }
     const Result result = Run(image);
+    CheckFinite(result);
     std::vector<Candidate> candidates =
         SuppressOverlaps(result.layout.decode(result.layout, result.outputs, filter_));
     std::vector<InstanceMask> instances;
@@ -155,6 +160,7 @@ class Segmenter::Implementation {
   }
 
   const std::vector<std::string>& names() const { return names_; }
+  const std::string& hash() const { return hash_; }
   bool gives_boxes() const { return options_.use_boxes || !layout_.prototypes; }
 
   std::string Describe() const {
@@ -181,6 +187,19 @@ class Segmenter::Implementation {
     }
   }
 
+  // Runs the network once. Some networks divide by the brightness of the image, so a grey image is
+  // the second try.
+  NetworkLayout TryOut() {
+    constexpr double kGrey = 114.0;  // as the borders of a letterbox
+    const cv::Size size = declared_.value_or(InputSize({4, 3}, kDefaultSize));
+    Result result = RunAt(cv::Mat(size, CV_8UC3, cv::Scalar::all(0.0)), size);
+    if (!FindNotFinite(result).empty()) {
+      result = RunAt(cv::Mat(size, CV_8UC3, cv::Scalar::all(kGrey)), size);
+      CheckFinite(result);
+    }
+    return result.layout;
+  }
+
   // Runs the network on an image. It is asked for an input with the proportions of the image first,
   // which has no grey borders to compute. A network with layers for one size refuses others.
   Result Run(const cv::Mat& image) {
@@ -193,7 +212,10 @@ class Segmenter::Implementation {
       try {
         return RunAt(image, fitting);
       } catch (const InputError&) {
+        // A network that fails with the other size, too, fails because of this image.
+        Result result = RunAt(image, *declared_);
         has_one_size_ = true;
+        return result;
       }
     }
     return RunAt(image, *declared_);
@@ -203,7 +225,7 @@ class Segmenter::Implementation {
     Result result{.outputs = {}, .layout = {}, .letterbox = FitLetterbox(image.size(), size)};
     try {
       result.outputs = network_->Run(MakeInput(image, result.letterbox));
-    } catch (const cv::Exception& error) {
+    } catch (const NetworkError& error) {
       Fail(path_, "run", error);
     }
     try {
@@ -211,15 +233,23 @@ class Segmenter::Implementation {
     } catch (const InputError& error) {
       throw InputError(path_.string() + ": " + error.what());
     }
-    for (const NetworkOutput& output : result.outputs) {
-      if (!cv::checkRange(output.values)) {
-        throw InputError(fmt::format(
-            "{}: the output '{}' has values that are not finite, expected numbers; a network with "
-            "half precision gives them, so export it with half=False",
-            path_.string(), output.name));
-      }
-    }
     return result;
+  }
+
+  // The name of an output with values that are not finite; empty if there is none.
+  static std::string FindNotFinite(const Result& result) {
+    const auto found = std::ranges::find_if(
+        result.outputs, [](const NetworkOutput& output) { return !cv::checkRange(output.values); });
+    return found != result.outputs.end() ? found->name : std::string();
+  }
+
+  void CheckFinite(const Result& result) const {
+    if (const std::string output = FindNotFinite(result); !output.empty()) {
+      throw InputError(fmt::format(
+          "{}: the output '{}' has values that are not finite, expected numbers; a network with "
+          "half precision gives them, so export it with half=False",
+          path_.string(), Printable(output)));
+    }
   }
 
   InstanceMask MakeInstance(const Candidate& candidate, const Result& result) const {
@@ -240,6 +270,7 @@ class Segmenter::Implementation {
 
   const fs::path path_;
   const SegmenterOptions options_;
+  std::string hash_;
   std::unique_ptr<Network> network_;
   std::optional<cv::Size> declared_;  // the size of the input in the file
   std::optional<size_t> known_classes_;
@@ -259,6 +290,8 @@ std::vector<InstanceMask> Segmenter::Segment(const cv::Mat& image) {
 }
 
 const std::vector<std::string>& Segmenter::class_names() const { return implementation_->names(); }
+
+const std::string& Segmenter::network_hash() const { return implementation_->hash(); }
 
 bool Segmenter::gives_boxes() const { return implementation_->gives_boxes(); }
 

@@ -24,15 +24,15 @@ TEST(OpenNetwork, OutputsAreInTheOrderOfTheFileAndOutliveTheNextRun) {
 }
 
 TEST(OpenNetwork, OpencvSaysWhatItCannotReadOnlyInItsException) {
-  EXPECT_THROW(OpenNetwork("no network"), cv::Exception);
-  MadeMessage node;
+  EXPECT_THROW(OpenNetwork("no network"), NetworkError);
+  ProtobufMessage node;
   node.Text(1, "images").Text(2, "out").Text(4, "Nonsense");
-  MadeMessage graph;
+  ProtobufMessage graph;
   graph.Message(1, node).Text(2, "graph");
-  MadeMessage model;
+  ProtobufMessage model;
   model.Number(1, 8).Message(7, graph);
   testing::internal::CaptureStderr();
-  EXPECT_THROW(OpenNetwork(model.bytes()), cv::Exception);
+  EXPECT_THROW(OpenNetwork(model.bytes()), NetworkError);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 

@@ -2,11 +2,16 @@
 #include "hullslam/segmentation/segmenter.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "support/expect_error.h"
 #include "support/made_network.h"
@@ -120,6 +125,23 @@ TEST_F(SegmenterTest, BoxesAreUsedOnlyIfAsked) {
   ExpectRectangle(boxes[1], {80, 0, 48, 48}, 1e-3);  // cut at the border
 }
 
+TEST_F(SegmenterTest, AnImageThatTheNetworkFailsOnDoesNotChangeOthers) {
+  // The images have not the size of the input, which is what a network may refuse.
+  const cv::Mat image = TwoBlobs()(cv::Rect(0, 0, 128, 64)).clone();
+  const std::vector<InstanceMask> expected = Segmenter(Write({})).Segment(image);
+  ASSERT_EQ(expected.size(), 2U);
+  Segmenter segmenter(Write({.overflows_on_white = true}));
+  const cv::Mat white(64, 128, CV_8UC3, cv::Scalar::all(255));
+  for (int i = 0; i < 2; ++i) {
+    ExpectInputError([&] { segmenter.Segment(white); }, {"network.onnx", "'head0'", "not finite"});
+    const std::vector<InstanceMask> masks = segmenter.Segment(image);
+    ASSERT_EQ(masks.size(), expected.size());
+    for (size_t k = 0; k < masks.size(); ++k) {
+      EXPECT_EQ(masks[k].outlines, expected[k].outlines);
+    }
+  }
+}
+
 TEST_F(SegmenterTest, RefusesWhatIsNoNetworkForSegmentation) {
   const std::string bytes = MadeNetwork().Bytes();
   ExpectInputError([&] { Segmenter segmenter(folder_.path() / "none.onnx"); }, {"none.onnx"});
@@ -133,6 +155,68 @@ TEST_F(SegmenterTest, RefusesWhatIsNoNetworkForSegmentation) {
            {MadeNetwork{.weights_file = "weights.bin"}.Bytes(), "weights.bin"}}) {
     const auto file = folder_.Write("bad.onnx", content);
     ExpectInputError([&] { Segmenter segmenter(file); }, {"bad.onnx", fault, "expected"});
+  }
+}
+
+// The processes that run networks for this one.
+std::vector<pid_t> NetworkProcesses() {
+  std::vector<pid_t> processes;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream stream(entry.path() / "stat");
+    std::string name;
+    char state = 0;
+    pid_t process = 0;
+    pid_t parent = 0;
+    if (stream >> process >> name >> state >> parent && parent == ::getpid() &&
+        name.starts_with("(hullslam_net")) {
+      processes.push_back(process);
+    }
+  }
+  return processes;
+}
+
+TEST_F(SegmenterTest, AnImageWithWhichOpencvCrashesIsAnErrorAndOthersGoOn) {
+  Segmenter segmenter(Write({}));
+  const std::vector<InstanceMask> expected = segmenter.Segment(TwoBlobs());
+  const std::vector<pid_t> processes = NetworkProcesses();
+  ASSERT_EQ(processes.size(), 1U);
+  ::kill(processes[0], SIGSEGV);
+  ExpectInputError([&] { segmenter.Segment(TwoBlobs()); },
+                   {"network.onnx", "OpenCV", "crashed (Segmentation fault)", "expected"});
+  const std::vector<InstanceMask> again = segmenter.Segment(TwoBlobs());
+  ASSERT_EQ(again.size(), expected.size());
+  EXPECT_EQ(again[0].outlines, expected[0].outlines);
+}
+
+TEST_F(SegmenterTest, TheProcessOfANetworkEndsWithIt) {
+  { const Segmenter segmenter(Write({})); }
+  EXPECT_TRUE(NetworkProcesses().empty());
+  EXPECT_THROW(Segmenter(Write({.is_classifier = true})), InputError);
+  EXPECT_TRUE(NetworkProcesses().empty());
+}
+
+// OpenCV writes over its own memory with some of these; that is no reason to end this process.
+TEST_F(SegmenterTest, HostileNetworksAreErrors) {
+  for (const int axis : {4, 5, 6, 7, -5, -8}) {
+    const auto file = folder_.Write("bad.onnx", MadeNetwork{.gather_axis = axis}.Bytes());
+    ExpectInputError([&] { Segmenter segmenter(file); }, {"bad.onnx", "expected"});
+  }
+}
+
+TEST_F(SegmenterTest, TheHashIsThatOfTheFile) {
+  const std::string first = Segmenter(Write({})).network_hash();
+  EXPECT_EQ(first.size(), 16U);
+  EXPECT_EQ(Segmenter(folder_.Write("other.onnx", MadeNetwork().Bytes())).network_hash(), first);
+  EXPECT_NE(Segmenter(Write({.bias = 1.0F})).network_hash(), first);
+}
+
+TEST_F(SegmenterTest, NamesThatWouldShiftOthersAreRefused) {
+  for (const char* const names : {"{0: 'cup\\nbook', 1: 'tv'}", "{0: 'cup\xff', 1: 'tv'}",
+                                  "{0: 'cup', 1: 'cup'}", "red and blue"}) {
+    const auto network = Write({.names = names});
+    ExpectInputError([&] { Segmenter segmenter(network); }, {"network.onnx", "names", "--names"});
+    EXPECT_EQ(Segmenter(network, {.names = folder_.Write("n.txt", "cup\ntv\n")}).class_names()[1],
+              "tv");
   }
 }
 

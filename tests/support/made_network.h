@@ -5,26 +5,27 @@
 #include <bit>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hullslam {
 
 // A message of protobuf, field by field.
-class MadeMessage {
+class ProtobufMessage {
  public:
-  MadeMessage& Number(uint64_t field, uint64_t value) {
+  ProtobufMessage& Number(uint64_t field, uint64_t value) {
     PutVarint(field << 3U);
     PutVarint(value);
     return *this;
   }
-  MadeMessage& Text(uint64_t field, const std::string& value) {
+  ProtobufMessage& Text(uint64_t field, const std::string& value) {
     PutVarint(field << 3U | 2U);
     PutVarint(value.size());
     bytes_ += value;
     return *this;
   }
-  MadeMessage& Message(uint64_t field, const MadeMessage& value) {
+  ProtobufMessage& Message(uint64_t field, const ProtobufMessage& value) {
     return Text(field, value.bytes());
   }
   const std::string& bytes() const { return bytes_; }
@@ -51,20 +52,26 @@ struct MadeNetwork {
   bool is_classifier = false;
   float bias = 0.0F;              // of the coefficients
   std::string weights_file = {};  // where the weights are said to be; empty: in the network
+  // The axis of a node Gather in front of all others; absent: there is none.
+  std::optional<int> gather_axis = {};
+  bool overflows_on_white = false;  // values are not finite where 8x8 px are white
 
   std::string Bytes() const {
-    MadeMessage graph;
+    ProtobufMessage graph;
     graph.Text(2, "blobs");
     graph.Message(11, Value("images", {1, 3, size[0], size[1]}));
+    if (gather_axis) {
+      AddGather(graph);
+    }
     if (is_classifier) {
       AddClassifier(graph);
     } else {
       AddHeads(graph);
     }
-    MadeMessage model;
-    model.Number(1, 8).Message(7, graph).Message(8, MadeMessage().Text(1, "").Number(2, 12));
+    ProtobufMessage model;
+    model.Number(1, 8).Message(7, graph).Message(8, ProtobufMessage().Text(1, "").Number(2, 12));
     if (!names.empty()) {
-      model.Message(14, MadeMessage().Text(1, "names").Text(2, names));
+      model.Message(14, ProtobufMessage().Text(1, "names").Text(2, names));
     }
     return model.bytes();
   }
@@ -74,19 +81,19 @@ struct MadeNetwork {
   static constexpr int kSides = 64;
 
   // The sides are an open number if they are 0.
-  static MadeMessage Value(const std::string& name, const std::vector<int>& shape) {
-    MadeMessage sides;
+  static ProtobufMessage Value(const std::string& name, const std::vector<int>& shape) {
+    ProtobufMessage sides;
     for (const int side : shape) {
-      sides.Message(1, side > 0 ? MadeMessage().Number(1, static_cast<uint64_t>(side))
-                                : MadeMessage().Text(2, "any"));
+      sides.Message(1, side > 0 ? ProtobufMessage().Number(1, static_cast<uint64_t>(side))
+                                : ProtobufMessage().Text(2, "any"));
     }
-    return MadeMessage().Text(1, name).Message(
-        2, MadeMessage().Message(1, MadeMessage().Number(1, 1).Message(2, sides)));
+    return ProtobufMessage().Text(1, name).Message(
+        2, ProtobufMessage().Message(1, ProtobufMessage().Number(1, 1).Message(2, sides)));
   }
 
   void AddWeights(const std::string& name, const std::vector<int>& shape,
-                  const std::vector<float>& values, MadeMessage& graph) const {
-    MadeMessage tensor;
+                  const std::vector<float>& values, ProtobufMessage& graph) const {
+    ProtobufMessage tensor;
     for (const int side : shape) {
       tensor.Number(1, static_cast<uint64_t>(side));
     }
@@ -99,13 +106,13 @@ struct MadeNetwork {
     if (weights_file.empty()) {
       tensor.Text(9, raw);
     } else {
-      tensor.Message(13, MadeMessage().Text(1, "location").Text(2, weights_file)).Number(14, 1);
+      tensor.Message(13, ProtobufMessage().Text(1, "location").Text(2, weights_file)).Number(14, 1);
     }
     graph.Message(5, tensor);
   }
 
-  static MadeMessage Integers(const std::string& name, const std::vector<int>& values) {
-    MadeMessage attribute;
+  static ProtobufMessage Integers(const std::string& name, const std::vector<int>& values) {
+    ProtobufMessage attribute;
     attribute.Text(1, name);
     for (const int value : values) {
       attribute.Number(8, static_cast<uint64_t>(value));
@@ -114,23 +121,32 @@ struct MadeNetwork {
   }
 
   static void AddNode(const std::string& kind, const std::vector<std::string>& inputs,
-                      const std::string& output, const std::vector<MadeMessage>& attributes,
-                      MadeMessage& graph) {
-    MadeMessage node;
+                      const std::string& output, const std::vector<ProtobufMessage>& attributes,
+                      ProtobufMessage& graph) {
+    ProtobufMessage node;
     for (const std::string& input : inputs) {
       node.Text(1, input);
     }
     node.Text(2, output).Text(3, output).Text(4, kind);
-    for (const MadeMessage& attribute : attributes) {
+    for (const ProtobufMessage& attribute : attributes) {
       node.Message(5, attribute);
     }
     graph.Message(1, node);
   }
 
+  void AddGather(ProtobufMessage& graph) const {
+    graph.Message(5, ProtobufMessage().Number(1, 1).Number(2, 7).Text(8, "index").Number(7, 0));
+    const ProtobufMessage axis = ProtobufMessage()
+                                     .Text(1, "axis")
+                                     .Number(3, static_cast<uint64_t>(int64_t{*gather_axis}))
+                                     .Number(20, 2);
+    AddNode("Gather", {"images", "index"}, "gathered", {axis}, graph);
+  }
+
   // The mean colour of squares, and a linear function of it: `rows` has red, green, blue and the
   // constant of each channel.
   void AddColourMap(const std::string& name, int stride,
-                    const std::vector<std::array<float, 4>>& rows, MadeMessage& graph) const {
+                    const std::vector<std::array<float, 4>>& rows, ProtobufMessage& graph) const {
     std::vector<float> factors;
     std::vector<float> constants;
     for (const std::array<float, 4>& row : rows) {
@@ -140,7 +156,7 @@ struct MadeNetwork {
     const int channels = static_cast<int>(rows.size());
     AddWeights(name + ".weight", {channels, 3, 1, 1}, factors, graph);
     AddWeights(name + ".bias", {channels}, constants, graph);
-    AddNode("AveragePool", {"images"}, name + ".mean",
+    AddNode("AveragePool", {gather_axis ? "gathered" : "images"}, name + ".mean",
             {Integers("kernel_shape", {stride, stride}), Integers("strides", {stride, stride})},
             graph);
     AddNode("Conv", {name + ".mean", name + ".weight", name + ".bias"}, name,
@@ -155,6 +171,9 @@ struct MadeNetwork {
     }
     const float gain = finds ? 20.0F : 0.0F;
     const float constant = finds ? -5.0F : -20.0F;
+    if (!finds && overflows_on_white) {
+      rows[0] = {1.4e38F, 1.4e38F, 1.4e38F, 0.0F};
+    }
     rows.push_back({gain, -gain / 2, -gain / 2, constant});
     rows.push_back({-gain / 2, -gain / 2, gain, constant});
     if (has_masks) {
@@ -165,7 +184,7 @@ struct MadeNetwork {
     return rows;
   }
 
-  void AddHeads(MadeMessage& graph) const {
+  void AddHeads(ProtobufMessage& graph) const {
     AddColourMap("head0", 8, HeadRows(false), graph);
     AddColourMap("head1", 16, HeadRows(false), graph);
     AddColourMap("head2", 32, HeadRows(true), graph);
@@ -175,7 +194,7 @@ struct MadeNetwork {
     }
   }
 
-  void AddClassifier(MadeMessage& graph) const {
+  void AddClassifier(ProtobufMessage& graph) const {
     AddNode("GlobalAveragePool", {"images"}, "mean", {}, graph);
     AddNode("Flatten", {"mean"}, "classes", {}, graph);
     graph.Message(12, Value("classes", {1, 3}));

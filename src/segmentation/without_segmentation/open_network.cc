@@ -5,7 +5,7 @@
 
 namespace hullslam {
 
-std::unique_ptr<Network> OpenNetwork(std::string_view /*bytes*/) {
+std::unique_ptr<Network> OpenNetwork(std::string /*bytes*/, int /*threads*/) {
   RequireComponent("SEGMENTATION", "masks are to be made");
   return nullptr;
 }
