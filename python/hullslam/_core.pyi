@@ -477,7 +477,7 @@ def evaluate_trajectory(groundtruth: Trajectory | _Path, estimate: Trajectory | 
                         align: Literal["se3", "sim3", "none"] = "se3",
                         pairing: Literal["tum", "evo"] = "tum",
                         max_difference: float | None = None) -> TrajectoryErrors:
-    """Measures the error of a trajectory, as the program `evaluate` does
+    """Measures the error of a trajectory, as `hullslam evaluate` does
     (docs/outputs.md).
 
     groundtruth, estimate: Trajectory, or path of a file in TUM's format.
@@ -517,7 +517,7 @@ def scene(source: _Path) -> dict[str, Any]:
     scene.json (docs/scene.md): dict. Raises InputError for a run without masks.
     """
 def report(source: _Path, output: _Path | None = None) -> pathlib.Path:
-    """Writes the report of a run (its folder) or of a saved map, as `view --report` does.
+    """Writes the report of a run (its folder) or of a saved map, as `hullslam view --report` does.
     Returns its path.
 
     output: the file; None: report.html in the folder, or beside the map.
