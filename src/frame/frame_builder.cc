@@ -13,6 +13,7 @@
 #include "camera/fit_depth.h"
 #include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
+#include "frame/keypoint_depth.h"
 #include "frame/keypoint_grid.h"
 #include "hullslam/util/error.h"
 
@@ -59,16 +60,6 @@ void CheckImages(const ImageInput& image, const Sensor& sensor) {
         fmt::format("there {}, expected none without a stereo camera",
                     image.right.empty() ? "are masks of a right image" : "is a right image"));
   }
-}
-
-// The depths of the keypoints, m; 0 where they are unknown.
-std::vector<float> SampleDepths(std::span<const RawKeypoint> keypoints, const cv::Mat& depth,
-                                double units_per_metre) {
-  std::vector<float> depths(keypoints.size(), 0.0f);
-  for (size_t i = 0; i < keypoints.size() && !depth.empty(); ++i) {
-    depths[i] = SampleDepth(depth, keypoints[i].raw, units_per_metre);
-  }
-  return depths;
 }
 
 std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera& camera) {
@@ -263,6 +254,18 @@ std::vector<uint32_t> FrameBuilder::DynamicKeypoints(std::span<const InstanceMas
   return dynamic;
 }
 
+// 0 where the depth is unknown.
+std::vector<float> FrameBuilder::SampleDepths(std::span<const RawKeypoint> keypoints,
+                                              const cv::Mat& depth) const {
+  std::vector<float> depths(keypoints.size(), 0.0f);
+  for (size_t i = 0; i < keypoints.size() && !depth.empty(); ++i) {
+    const auto level = static_cast<size_t>(keypoints[i].level);
+    depths[i] = KeypointDepth(depth, keypoints[i], static_cast<double>(sensor_.levels.scale[level]),
+                              sensor_.camera.bf, depth_);
+  }
+  return depths;
+}
+
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
   ExtractedFeatures extracted = stereo_
@@ -280,7 +283,7 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
   features.depth = stereo_
                        ? DepthsOf(stereo_->FindDisparities(extracted, extractor_.pyramid(), runner),
                                   sensor_.camera)
-                       : SampleDepths(extracted.keypoints, image.depth, depth_.units_per_metre);
+                       : SampleDepths(extracted.keypoints, image.depth);
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
   features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera, sensor_.bounds);

@@ -56,6 +56,8 @@ class FrameBuilder {
  private:
   // `image` has depth of its own size.
   BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks);
+  std::vector<float> SampleDepths(std::span<const RawKeypoint> keypoints,
+                                  const cv::Mat& depth) const;  // m
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"
 #include "support/square_mask.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -50,8 +52,8 @@ FeatureOptions FewFeatures() {
   return options;
 }
 
-// An image of bright and dark rectangles, and depths that change from pixel to pixel and have
-// holes.
+// An image of bright and dark rectangles, and depths of a slanted surface that differ from pixel to
+// pixel and have holes.
 ImageInput MakeImage() {
   ImageInput image;
   image.timestamp = 12.5;
@@ -63,7 +65,11 @@ ImageInput MakeImage() {
     image.grey(box).setTo(random.uniform(0, 256));
   }
   image.depth = cv::Mat(kHeight, kWidth, CV_16UC1);
-  random.fill(image.depth, cv::RNG::UNIFORM, 5000, 20000);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      image.depth.at<uint16_t>(y, x) = static_cast<uint16_t>(6000 + 11 * x + 7 * y);
+    }
+  }
   image.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(0);
   return image;
 }
@@ -446,6 +452,124 @@ TEST_F(FrameBuilderTest, AMonocularCameraHasNoDepth) {
     EXPECT_EQ(frame->features.depth[i], 0.0f);
     EXPECT_EQ(frame->features.right_u[i], -1.0f);
   }
+}
+
+// A slanted plane with a random texture, seen without noise. The depth image has a depth for the
+// centre of each pixel of the grey one.
+class SlantedPlane : public testing::TestWithParam<TestCamera> {
+ protected:
+  // The depth (z, m) of the plane along the ray to an undistorted pixel of a camera at `centre`,
+  // which is turned as the world is.
+  double DepthAt(const Eigen::Vector2d& undistorted, const Eigen::Vector3d& centre) const {
+    const Eigen::Vector3d ray = sensor_.camera.Unproject(undistorted, 1.0);
+    return (kDistance - kNormal.dot(centre)) / kNormal.dot(ray);
+  }
+
+  std::unique_ptr<const Frame> See(const Eigen::Vector3d& centre) {
+    const PinholeCamera& camera = sensor_.camera;
+    ImageInput image;
+    image.grey = cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(0));
+    image.depth = cv::Mat(camera.height, camera.width, CV_16UC1, cv::Scalar(0));
+    for (int y = 0; y < camera.height; ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        const Eigen::Vector2d raw(x, y);
+        const Eigen::Vector2d pixel = camera.Undistort(raw);
+        const double z = DepthAt(pixel, centre);
+        if (camera.SeesRaw(raw) && z > 0.0 && z < 6.0) {
+          image.grey.at<uint8_t>(y, x) = Texture(centre + camera.Unproject(pixel, z));
+          image.depth.at<uint16_t>(y, x) = static_cast<uint16_t>(std::lround(5000.0 * z));
+        }
+      }
+    }
+    return FrameBuilder(sensor_, DepthOptions(), {.feature_count = 1500})
+        .Build(image, runner_)
+        .frame;
+  }
+
+  const Sensor sensor_ = GetParam().sensor;
+
+ private:
+  // Squares of 3, 8 and 20 cm, so that there are corners at all levels.
+  static uint8_t Texture(const Eigen::Vector3d& point) {
+    uint32_t sum = 0;
+    for (const double side : {0.03, 0.08, 0.20}) {
+      uint32_t hash = 17;
+      for (const double along : {point.x(), point.y()}) {
+        const auto cell = static_cast<int32_t>(std::floor(along / side));
+        hash = (hash ^ static_cast<uint32_t>(cell)) * 0x9E3779B1U;
+        hash ^= hash >> 15;
+      }
+      sum += hash % 80;
+    }
+    return static_cast<uint8_t>(10 + sum);
+  }
+
+  static constexpr double kDistance = 1.6;  // m
+  const Eigen::Vector3d kNormal = Eigen::Vector3d(0.25, -0.35, 1.0).normalized();
+  SerialRunner runner_;
+};
+
+// Stereo pairs have no depth image.
+INSTANTIATE_TEST_SUITE_P(Cameras, SlantedPlane,
+                         testing::Values(TestCameras()[0], TestCameras()[1], TestCameras()[2]),
+                         NameOfCamera);
+
+// The depth is that of the nearest pixel, so single ones differ by the slant on half a pixel. In
+// the mean of each level there is no difference: grey image and depth have the same pixel centres.
+TEST_P(SlantedPlane, DepthAndGreyImageHaveTheSamePixels) {
+  const std::unique_ptr<const Frame> frame = See(Eigen::Vector3d::Zero());
+  std::map<int, std::vector<double>> errors;  // relative, of the inverse depth, by level
+  for (size_t i = 0; i < frame->features.size(); ++i) {
+    const Keypoint& keypoint = frame->features.keypoints[i];
+    const double found = static_cast<double>(frame->features.depth[i]);
+    if (found > 0.0) {
+      const double truth = DepthAt(keypoint.undistorted.cast<double>(), Eigen::Vector3d::Zero());
+      errors[keypoint.level].push_back(truth / found - 1.0);
+      EXPECT_NEAR(truth / found, 1.0, 0.02);
+    }
+  }
+  ASSERT_EQ(errors.size(), 8u);
+  for (const auto& [level, of_level] : errors) {
+    const double count = static_cast<double>(of_level.size());
+    const double sum = std::accumulate(of_level.begin(), of_level.end(), 0.0);
+    EXPECT_GT(count, 30.0) << level;
+    EXPECT_NEAR(sum / count, 0.0, 2e-4) << level;
+  }
+}
+
+// The displacement of keypoints between two views is that which their depth tells.
+TEST_P(SlantedPlane, DepthAgreesWithTheParallaxOfTwoViews) {
+  const Eigen::Vector3d other(0.2, 0.05, 0.0);
+  const std::unique_ptr<const Frame> a = See(Eigen::Vector3d::Zero());
+  const std::unique_ptr<const Frame> b = See(other);
+  const FrameFeatures& seen = a->features;
+  double product = 0.0;  // of the error along the parallax and the parallax, px^2
+  double square = 0.0;   // of the parallax
+  int count = 0;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    const double z = static_cast<double>(seen.depth[i]);
+    if (z <= 0.0) {
+      continue;
+    }
+    const Eigen::Vector3d point =
+        sensor_.camera.Unproject(seen.keypoints[i].undistorted.cast<double>(), z);
+    const Eigen::Vector2d expected = sensor_.ToGrid(sensor_.camera.Project(point - other));
+    const Eigen::Vector2d far = sensor_.ToGrid(seen.keypoints[i].undistorted.cast<double>());
+    std::vector<uint32_t> near;
+    b->features.grid.FindNear(b->features.keypoints, expected.cast<float>(), 3.0F,
+                              seen.keypoints[i].level, seen.keypoints[i].level, near);
+    if (near.size() == 1 &&
+        HammingDistance(seen.descriptors[i], b->features.descriptors[near[0]]) <= 40) {
+      const Eigen::Vector2d found =
+          sensor_.ToGrid(b->features.keypoints[near[0]].undistorted.cast<double>());
+      const Eigen::Vector2d parallax = expected - far;
+      product += (found - expected).dot(parallax);
+      square += parallax.squaredNorm();
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 250);
+  EXPECT_NEAR(product / square, 0.0, 0.004);
 }
 
 }  // namespace
