@@ -112,5 +112,40 @@ TEST_F(SegmentCommand, SkipsAnImageThatCannotBeReadAndSaysIfNothingIsFound) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("none of its images"), std::string::npos);
 }
 
+TEST_F(SegmentCommand, AnImageThatTheNetworkFailsOnDoesNotStopTheOthers) {
+  folder_.Write("network.onnx", MadeNetwork{.overflows_on_white = true}.Bytes());
+  const cv::Mat white(96, 128, CV_8UC3, cv::Scalar::all(255));
+  cv::imwrite((folder_.path() / "images/img1.png").string(), white);
+  for (int call = 0; call < 2; ++call) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(Run(), 0);
+    const std::string errors = testing::internal::GetCapturedStderr();
+    EXPECT_NE(errors.find("warning: the network fails on 1 image, which has no masks; the first is "
+                          "img1.png: "),
+              std::string::npos)
+        << errors;
+    EXPECT_TRUE(fs::exists(Mask("img0.txt")));
+    EXPECT_FALSE(fs::exists(Mask("img1.txt"))) << "an empty file would say that nothing is there";
+    EXPECT_TRUE(fs::exists(Mask("img3.txt")));
+  }
+  for (const char* const name : {"img0.png", "img2.png", "img3.png"}) {
+    cv::imwrite((folder_.path() / "images" / name).string(), white);
+  }
+  EXPECT_EQ(Run({}, "none"), 2);
+}
+
+// Its masks would take the place of the names of the classes.
+TEST_F(SegmentCommand, AnImageCalledClassesIsLeftOut) {
+  cv::imwrite((folder_.path() / "images/classes.png").string(), GreyImage(128, 96));
+  for (int call = 0; call < 2; ++call) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(Run(), 0);
+    const std::string errors = testing::internal::GetCapturedStderr();
+    EXPECT_NE(errors.find("classes.png: its masks would be in"), std::string::npos) << errors;
+    EXPECT_EQ(ReadText(Mask("classes.txt")), "red\nblue\n");
+    EXPECT_TRUE(fs::exists(Mask("img3.txt")));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -4,25 +4,22 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "files/atomic_file.h"
-#include "files/canonical_path.h"
-#include "files/json_file.h"
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/segmentation/segmenter.h"
 #include "hullslam/util/error.h"
 #include "masks/yolo_text.h"
-#include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/segment_record.h"
 #include "run/segmenter_arguments.h"
 #include "run/tools/commands.h"
 #include "sequences/open_images.h"
@@ -32,9 +29,6 @@ namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Beside the masks: what they were made with.
-constexpr const char* kRecord = "segment.json";
 
 struct SegmentArguments {
   fs::path input;
@@ -67,61 +61,18 @@ void AddOptions(CLI::App& app, SegmentArguments& arguments) {
   AddVersionAndExitCodes(app, "done", "the program failed or was interrupted");
 }
 
-// What the masks of a folder have in common.
-nlohmann::ordered_json MakeRecord(const SegmentArguments& arguments) {
-  std::error_code error;
-  return {{"input", CanonicalName(arguments.input)},
-          {"network", arguments.network.filename().string()},
-          {"bytes", fs::file_size(arguments.network, error)},
-          {"min_score", arguments.options.min_score},
-          {"size", arguments.options.size},
-          {"classes", arguments.options.classes},
-          {"names", arguments.options.names.filename().string()},
-          {"boxes", arguments.options.use_boxes}};
-}
-
-// Makes the folder with the names of the classes. Refuses one with masks of other networks or
-// options, because they would be mixed, and one with other files.
-void PrepareFolder(const SegmentArguments& arguments, const Segmenter& segmenter) {
-  const nlohmann::ordered_json record = MakeRecord(arguments);
-  const fs::path file = arguments.output / kRecord;
-  std::error_code error;
-  fs::create_directories(arguments.output, error);
-  if (!fs::is_directory(arguments.output, error)) {
-    throw InputError(arguments.output.string() + ": cannot be made, expected a folder");
-  }
-  if (fs::exists(file, error)) {
-    const nlohmann::ordered_json former = ReadJson(file);
-    if (former != nlohmann::json(record)) {
-      throw InputError(fmt::format(
-          "{}: has masks that were made with {}, not with {}; choose another --output, or delete "
-          "them",
-          arguments.output.string(), former.dump(), record.dump()));
-    }
-  } else if (!fs::is_empty(arguments.output, error)) {
-    throw InputError(arguments.output.string() +
-                     ": contains files, but no masks of this command; choose another --output");
-  } else {
-    WriteFileAtomically(file, record.dump() + '\n');
-  }
-  // A former call may have been killed before it came here.
-  std::string names;
-  for (const std::string& name : segmenter.class_names()) {
-    names += name + '\n';
-  }
-  WriteFileAtomically(arguments.output / "classes.txt", names);
-}
-
 struct SegmentCounts {
   size_t frames = 0;                             // that are asked for
   size_t done = 0;                               // that have a file now
   size_t made = 0;                               // by this call
   std::map<std::string, size_t> instances = {};  // by class, of this call
-  std::vector<std::string> unread = {};          // faults of images
+  std::vector<std::string> unread = {};          // faults of images without masks
+  size_t failed = 0;                             // images that the network fails on
+  std::string first_failure = {};
 };
 
 // Writes the masks of a frame. A frame without instances gets an empty file, so that the next call
-// knows that it is done.
+// knows that it is done. A frame that the network fails on gets none.
 void SegmentFrame(const ImageSequence& sequence, const FramePaths& frame, const fs::path& file,
                   Segmenter& segmenter, SegmentCounts& counts) {
   cv::Mat image;
@@ -131,7 +82,15 @@ void SegmentFrame(const ImageSequence& sequence, const FramePaths& frame, const 
     counts.unread.emplace_back(error.what());
     return;
   }
-  const std::vector<InstanceMask> masks = segmenter.Segment(image);
+  std::vector<InstanceMask> masks;
+  try {
+    masks = segmenter.Segment(image);
+  } catch (const InputError& error) {
+    if (counts.failed++ == 0) {
+      counts.first_failure = fmt::format("{}: {}", frame.image.filename().string(), error.what());
+    }
+    return;
+  }
   WriteFileAtomically(file, YoloText(masks, segmenter.class_names(), image.size()));
   ++counts.made;
   ++counts.done;
@@ -148,6 +107,13 @@ SegmentCounts SegmentAll(const SegmentArguments& arguments, const ImageSequence&
   for (size_t i = 0; i < names.size(); i += arguments.every) {
     ++counts.frames;
     const fs::path file = arguments.output / (names[i].stem + ".txt");
+    if (file.filename() == kClassNames) {
+      counts.unread.push_back(
+          fmt::format("{}: its masks would be in {}, which has the names of the "
+                      "classes",
+                      sequence.frames[i].image.string(), file.string()));
+      continue;
+    }
     std::error_code error;
     if (fs::exists(file, error)) {
       ++counts.done;
@@ -167,6 +133,11 @@ SegmentCounts SegmentAll(const SegmentArguments& arguments, const ImageSequence&
 void PrintCounts(const SegmentArguments& arguments, const SegmentCounts& counts) {
   for (const std::string& fault : counts.unread) {
     PrintError("warning: {}; this frame has no masks\n", fault);
+  }
+  if (counts.failed > 0) {
+    PrintError("warning: the network fails on {}, which {} no masks; the first is {}\n",
+               Counted(counts.failed, "image"), counts.failed == 1 ? "has" : "have",
+               counts.first_failure);
   }
   if (counts.made > 0 && counts.instances.empty()) {
     PrintError(
@@ -199,7 +170,12 @@ int RunSegment(int argc, char** argv) {
   for (const std::string& warning : sequence.warnings) {
     PrintError("warning: {}\n", warning);
   }
-  PrepareFolder(arguments, segmenter);
+  PrepareMaskFolder(arguments.output, {.input = arguments.input,
+                                       .images = arguments.images,
+                                       .sequence = sequence,
+                                       .network = arguments.network,
+                                       .options = arguments.options,
+                                       .segmenter = segmenter});
   if (!arguments.quiet) {
     Print("{}\n", segmenter.Describe());
   }
@@ -211,7 +187,9 @@ int RunSegment(int argc, char** argv) {
     return kFailed;
   }
   if (counts.done == 0) {
-    PrintFailure(arguments.input.string() + ": none of its images can be read");
+    PrintFailure(arguments.input.string() +
+                 (counts.failed > 0 ? ": the network fails on all images that can be read"
+                                    : ": none of its images can be read"));
     return kBadInput;
   }
   return kDone;
