@@ -131,6 +131,15 @@ Json ToJson(const PresetOverrideSummary& replaced) {
           {"source", replaced.source}};
 }
 
+Json ToJson(const std::optional<NetworkSummary>& network) {
+  if (!network) {
+    return nullptr;
+  }
+  return {{"path", network->path},           {"hash", network->hash},
+          {"every", OrNull(network->every)}, {"classes", network->classes},
+          {"images", network->images},       {"failures", network->failures}};
+}
+
 Json ToJson(const ProvenanceSummary& summary) {
   Json overrides = Json::array();
   for (const PresetOverrideSummary& replaced : summary.preset_overrides) {
@@ -146,11 +155,13 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"pipeline", summary.pipeline},
           {"masks", OrNull(summary.masks)},
           {"masks_format", OrNull(summary.masks_format)},
+          {"network", ToJson(summary.network)},
           {"sequence", OrNull(summary.sequence)},
           {"dataset", OrNull(summary.dataset)},
           {"sequence_choices", Json(summary.sequence_choices)},
           {"map", OrNull(summary.map)},
-          {"interrupted", summary.interrupted}};
+          {"interrupted", summary.interrupted},
+          {"input_failure", OrNull(summary.input_failure)}};
 }
 
 }  // namespace

@@ -110,6 +110,16 @@ struct PresetOverrideSummary {
   std::string source;  // FILE:LINE, the name of a calibration, or --set
 };
 
+// The network that made the masks of a run (--segment).
+struct NetworkSummary {
+  std::string path;
+  std::string hash;                            // Segmenter::network_hash()
+  std::optional<size_t> every = std::nullopt;  // --segment-every; absent in real time
+  std::vector<std::string> classes = {};       // that it knows
+  size_t images = 0;                           // that it was run on
+  size_t failures = 0;                         // those of them that it made no masks of
+};
+
 struct ProvenanceSummary {
   std::optional<std::string> program = std::nullopt;  // "rgbd_tum"
   std::optional<std::string> version = std::nullopt;
@@ -121,11 +131,14 @@ struct ProvenanceSummary {
   std::string pipeline = "sequential";              // or "threaded"
   std::optional<std::string> masks = std::nullopt;  // the path of --masks
   std::optional<std::string> masks_format = std::nullopt;
+  std::optional<NetworkSummary> network = std::nullopt;  // absent without --segment
   std::optional<std::string> sequence = std::nullopt;
   std::optional<std::string> dataset = std::nullopt;         // ImageSequence::dataset
   std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices
   std::optional<std::string> map = std::nullopt;             // the path of --save-map
   bool interrupted = false;  // a signal ended the run before its end
+  // The input that ended the run before its end, and what is wrong with it.
+  std::optional<std::string> input_failure = std::nullopt;
 };
 
 struct RunSummary {

@@ -37,12 +37,30 @@ struct RunContent {
   RunSummary summary;
 };
 
+// Adds the network of --segment and its times.
+void SummarizeNetwork(const EndedRun& run, RunSummary& summary) {
+  const NetworkMasks* const network = run.masks.network();
+  if (network == nullptr) {
+    return;
+  }
+  const NetworkMasks::Work work = network->work();
+  summary.provenance.network =
+      NetworkSummary{.path = network->path().string(),
+                     .hash = network->hash(),
+                     .every = network->every() > 0 ? std::optional(network->every()) : std::nullopt,
+                     .classes = network->class_names(),
+                     .images = work.times.Total("segment").count,
+                     .failures = work.failures};
+  summary.timing.stages_ms.merge(SummarizeStages(work.times));
+}
+
 RunContent CollectContent(const EndedRun& run) {
   const SystemOptions& options = run.settings.options;
   RunContent content;
   content.summary = SummarizeRun(run.arguments, run.settings, run.sequence, run.result, run.system,
                                  run.groundtruth);
   content.summary.provenance.masks_format = run.masks.format();
+  SummarizeNetwork(run, content.summary);
   content.trajectory = run.system.trajectory();
   content.map = run.system.map() != nullptr ? run.system.map() : std::make_shared<const Map>();
   content.objects = MeasuredObjects(*content.map, options.camera, run.arguments.sequence);
@@ -120,6 +138,10 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
 
 // Why the run failed; empty if it did not.
 std::string DescribeFailure(const EndedRun& run, const RunSummary& summary) {
+  if (run.result.input_failure) {
+    return fmt::format("{}; the run ended after {} of {} frames, the results so far were written",
+                       *run.result.input_failure, run.result.given, run.sequence.frames.size());
+  }
   return run.result.was_interrupted
              ? DescribeInterruption(run.result, run.sequence)
              : DescribeLoss(run.arguments, run.settings.options.run, run.sequence.frames.size(),
@@ -151,8 +173,9 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
       arguments.report
           ? WriteReport(output.path(), *content.map, options, run.sequence, arguments.quiet)
           : "";
-  return FailIfAny(
+  const int code = FailIfAny(
       {DescribeFailure(run, content.summary), unsaved, unsaved_islands, unrecorded, unreported});
+  return run.result.input_failure ? kBadInput : code;
 }
 
 }  // namespace hullslam

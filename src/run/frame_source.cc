@@ -63,11 +63,15 @@ std::optional<FrameSource::LoadedImage> FrameSource::LoadNext() {
     return std::nullopt;
   }
   const size_t frame = next_++;
+  const NetworkMasks* const network = masks_.network();
   LoadedImage loaded;
   try {
     loaded.image = sequence_.load(sequence_.frames[frame], camera_);
+    if (network != nullptr) {
+      loaded.colour = network->LoadImage(frame);
+    }
   } catch (const InputError& error) {
-    loaded.error = error.what();
+    loaded = {.image = std::nullopt, .error = error.what()};
   }
   if (loaded.image) {
     AddMasks(frame, loaded);
@@ -76,13 +80,16 @@ std::optional<FrameSource::LoadedImage> FrameSource::LoadNext() {
 }
 
 void FrameSource::AddMasks(size_t frame, LoadedImage& loaded) const {
-  const NetworkMasks* const network = masks_.network();
-  if (network != nullptr && !network->IsRead(frame)) {
-    loaded.colour = network->LoadImage(frame);
+  if (const NetworkMasks* const network = masks_.network()) {
+    if (network->IsRead(frame)) {
+      auto masks = network->Make(std::exchange(loaded.colour, {}));
+      loaded.has_unknown_masks = !masks;
+      loaded.image->masks = masks ? *std::move(masks) : std::vector<InstanceMask>();
+    }
     return;
   }
   loaded.image->masks = masks_.Read(frame);
-  if (network == nullptr && sequence_.fit_mask != nullptr) {
+  if (sequence_.fit_mask != nullptr) {
     std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
   }
   loaded.image->right_masks = masks_.ReadRight(frame);
@@ -109,6 +116,7 @@ std::optional<LoadedFrame> FrameSource::BuildNext() {
                      .error = {},
                      .grey = keeps_images_ ? loaded->image->grey : cv::Mat(),
                      .colour = loaded->colour,
+                     .has_unknown_masks = loaded->has_unknown_masks,
                      .build_ms = milliseconds,
                      .delay = delay};
 }

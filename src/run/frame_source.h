@@ -26,6 +26,7 @@ struct LoadedFrame {
   // The image in colour, if a network is to make masks of it after the frame was tracked; else
   // empty.
   cv::Mat colour = {};
+  bool has_unknown_masks = false;                  // the network has failed on the image
   double build_ms = 0.0;                           // time of building
   std::chrono::steady_clock::duration delay = {};  // FrameSource::Pause() up to then, in all
 };
@@ -63,6 +64,7 @@ class FrameSource {
     std::optional<ImageInput> image;
     std::string error;
     cv::Mat colour = {};
+    bool has_unknown_masks = false;
   };
   using Clock = std::chrono::steady_clock;
 

@@ -13,9 +13,9 @@ LateMasks::LateMasks(Pace pace, const NetworkMasks& network, System& system)
   if (pace_ == Pace::kNeverWait) {
     worker_ = std::make_unique<LatestWorker<Picture>>([this](const Picture& picture) {
       RunInBackground();  // tracking comes first
-      Made made{picture.frame, network_.Make(picture.image)};
+      auto masks = network_.Make(picture.image);
       const std::lock_guard lock(mutex_);
-      made_ = std::move(made);
+      made_ = masks ? std::optional(Made{picture.frame, *std::move(masks)}) : std::nullopt;
     });
   }
 }
@@ -26,8 +26,8 @@ void LateMasks::AfterFrame(const TrackedFrame& frame, const cv::Mat& image) {
     return;
   }
   if (pace_ == Pace::kWait) {
-    if (IsKeyframe(frame.frame)) {
-      system_.AddMasks(frame.frame, network_.Make(image));
+    if (auto masks = IsKeyframe(frame.frame) ? network_.Make(image) : std::nullopt) {
+      system_.AddMasks(frame.frame, *std::move(masks));
     }
     return;
   }

@@ -15,7 +15,8 @@
 namespace hullslam {
 
 // Makes masks of frames after they were tracked, and adds them to the system (System::AddMasks).
-// Only keyframes keep masks, so masks are made of keyframes only.
+// Only keyframes keep masks, so masks are made of keyframes only. A keyframe whose image the
+// network fails on says nothing about objects.
 class LateMasks {
  public:
   enum class Pace {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/segmentation/segmenter.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
 
@@ -32,16 +34,28 @@ class NetworkMasks final : public MaskSource {
   // The image of a frame in colour. To be called like ImageSequence::load.
   cv::Mat LoadImage(size_t frame) const;
   // The masks of such an image, which are in the pixels of the image that ImageSequence::load
-  // gives. May be called by any thread.
-  std::vector<InstanceMask> Make(const cv::Mat& image) const;
+  // gives; absent if the network fails on it. May be called by any thread.
+  std::optional<std::vector<InstanceMask>> Make(const cv::Mat& image) const;
+  // What Make() has done.
+  struct Work {
+    StageTimes times = {};           // "segment": of each image
+    size_t failures = 0;             // images without masks
+    std::string first_failure = {};  // why the first of them has none
+  };
+  Work work() const;
+  const std::filesystem::path& path() const { return path_; }
+  const std::string& hash() const { return segmenter_.network_hash(); }
+  size_t every() const { return every_; }
   // Whether Read gives the masks of this frame of the sequence.
   bool IsRead(size_t frame) const { return every_ > 0 && frame % every_ == 0; }
   const std::vector<std::string>& class_names() const { return segmenter_.class_names(); }
   std::string Describe() const { return segmenter_.Describe(); }
 
  private:
-  mutable std::mutex mutex_;  // guards the segmenter
+  mutable std::mutex mutex_;  // guards the two members below
   mutable Segmenter segmenter_;
+  mutable Work work_;
+  const std::filesystem::path path_;
   const size_t every_;
   const ImageSequence& sequence_;
   const PinholeCamera& camera_;

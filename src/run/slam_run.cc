@@ -139,26 +139,27 @@ std::unique_ptr<LateMasks> MakeLateMasks(const RunArguments& arguments, const Se
       system);
 }
 
-RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
-                   const PinholeCamera& camera, const SequenceMasks& masks, System& system,
-                   LiveOutput& live) {
-  RunResult result;
-  const std::unique_ptr<LateMasks> late_masks = MakeLateMasks(arguments, masks, system);
-  Progress progress(sequence.frames.size(), arguments.quiet);
-  std::optional<InitialisationFailure> failure;  // failure of the last frame
-  system.SetFrameCallback([&](const FrameReport& report) {
-    failure = report.failure;
-    live.NoteFrame(report);
-    NoteFrame(report, arguments.selection,
-              report.tracked.timestamp - sequence.frames.front().timestamp, result);
-  });
-  Clock::time_point start = Clock::now();
-  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast, sequence, camera, masks,
-                     system, live.IsOn());
+// A run while its frames are tracked.
+struct TrackedRun {
+  const RunArguments& arguments;
+  const ImageSequence& sequence;
+  const PinholeCamera& camera;
+  const SequenceMasks& masks;
+  System& system;
+  LiveOutput& live;
+};
+
+// Tracks the frames up to the end or an interruption. Throws InputError if the input of a frame
+// cannot be used; the frames before it have been tracked. `shown` is the failure of the last frame.
+void TrackFrames(const TrackedRun& run, LateMasks* late_masks,
+                 const std::optional<InitialisationFailure>& shown, Clock::time_point& start,
+                 Progress& progress, RunResult& result) {
+  FrameSource frames(run.arguments.realtime ? Pace::kRealtime : Pace::kFast, run.sequence,
+                     run.camera, run.masks, run.system, run.live.IsOn());
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited =
-        live.BeforeFrame(frames, system, [&progress] { progress.Clear(); });
+        run.live.BeforeFrame(frames, run.system, [&progress] { progress.Clear(); });
     start += waited;
     progress.Skip(waited);
     std::optional<LoadedFrame> loaded = frames.Next();
@@ -167,7 +168,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
     }
     ++result.given;
     if (!loaded->frame) {
-      if (arguments.strict) {
+      if (run.arguments.strict) {
         throw InputError(loaded->error);
       }
       progress.Clear();
@@ -176,22 +177,56 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
       continue;
     }
     const Clock::time_point begin = Clock::now();
-    const TrackedFrame frame = system.Track(std::move(*loaded->frame));
-    if (late_masks != nullptr) {
+    const TrackedFrame frame = run.system.Track(std::move(*loaded->frame));
+    if (late_masks != nullptr && !loaded->has_unknown_masks) {
       late_masks->AfterFrame(frame, loaded->colour);
     }
-    live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), system);
-    progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
+    run.live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), run.system);
+    progress.Show(result.given, [&] { return DescribeState(frame.state, shown, run.system); });
   }
-  progress.Clear();
-  system.SetFrameCallback({});
   if (late_masks != nullptr) {
     late_masks->Finish();
   }
-  live.BeginFinishing();
-  FinishMap(arguments.quiet, system);
+}
+
+void WarnOfFailedMasks(const SequenceMasks& masks) {
+  if (masks.network() == nullptr) {
+    return;
+  }
+  if (const NetworkMasks::Work work = masks.network()->work(); work.failures > 0) {
+    PrintError("warning: the network fails on {}, which {} no masks; the first failure is {}\n",
+               Counted(work.failures, "image"), work.failures == 1 ? "has" : "have",
+               work.first_failure);
+  }
+}
+
+RunResult TrackAll(const TrackedRun& run) {
+  RunResult result;
+  System& system = run.system;
+  const std::unique_ptr<LateMasks> late_masks = MakeLateMasks(run.arguments, run.masks, system);
+  Progress progress(run.sequence.frames.size(), run.arguments.quiet);
+  std::optional<InitialisationFailure> failure;  // failure of the last frame
+  system.SetFrameCallback([&](const FrameReport& report) {
+    failure = report.failure;
+    run.live.NoteFrame(report);
+    NoteFrame(report, run.arguments.selection,
+              report.tracked.timestamp - run.sequence.frames.front().timestamp, result);
+  });
+  Clock::time_point start = Clock::now();
+  try {
+    TrackFrames(run, late_masks.get(), failure, start, progress, result);
+  } catch (const InputError& error) {
+    // A frame that is refused changes nothing, so the results up to it can be written.
+    result.input_failure = error.what();
+    result.given = system.frames().size() + result.skipped;
+  }
+  progress.Clear();
+  system.SetFrameCallback({});
+  run.live.BeginFinishing();
+  FinishMap(run.arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  WarnOfFailedMasks(run.masks);
   return result;
 }
 
@@ -281,7 +316,15 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   WarnOfInput(arguments, options, sequence, first, masks);
   PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
-  const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system, live);
+  const RunResult result = TrackAll({.arguments = arguments,
+                                     .sequence = sequence,
+                                     .camera = options.camera,
+                                     .masks = masks,
+                                     .system = system,
+                                     .live = live});
+  if (result.input_failure && system.frames().empty()) {
+    throw InputError(*result.input_failure);
+  }
   if (result.was_interrupted && result.given == 0) {
     PrintFailure("the run was interrupted before the first frame; nothing was written");
     return kFailed;

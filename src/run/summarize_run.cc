@@ -154,6 +154,7 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
     provenance.map = arguments.save_map.string();
   }
   provenance.interrupted = result.was_interrupted;
+  provenance.input_failure = result.input_failure;
 }
 
 }  // namespace

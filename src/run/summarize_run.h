@@ -25,6 +25,7 @@ struct RunResult {
   size_t skipped = 0;  // frames with an image that cannot be read
   double seconds = 0.0;
   bool was_interrupted = false;
+  std::optional<std::string> input_failure = {};  // why a frame's input ended the run early
   InitialisationSummary initialisation;
   MappedVector<FrameNote> notes;  // one per frame of the system
 };

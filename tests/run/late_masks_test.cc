@@ -19,8 +19,8 @@ class LateMasksTest : public testing::Test {
   LateMasksTest()
       : sequence_(OpenTumSequence(plane_.path())),
         options_(ReadSettings(plane_.path() / "camera.yaml")),
-        network_(folder_.Write("network.onnx", MadeNetwork().Bytes()), {}, 0, sequence_,
-                 options_.camera),
+        network_(folder_.Write("network.onnx", MadeNetwork{.overflows_on_white = true}.Bytes()), {},
+                 0, sequence_, options_.camera),
         system_(options_, PipelineKind::kSequential) {
     PaintBlob({180, 180, 120, 120}, true, colour_);
   }
@@ -59,6 +59,22 @@ TEST_F(LateMasksTest, AKeyframeGetsThemWhenTheyAreReadyInRealTime) {
   masks.Finish();
   EXPECT_EQ(DetectionsOfFirstKeyframe(), 1U);
   EXPECT_EQ(system_.object_counts().frames_with_masks, 1U);
+}
+
+// Else the keyframe would say that there are no objects.
+TEST_F(LateMasksTest, AKeyframeThatTheNetworkFailsOnGoesOnAwaitingMasks) {
+  const cv::Mat white(480, 640, CV_8UC3, cv::Scalar::all(255));
+  for (const auto pace : {LateMasks::Pace::kWait, LateMasks::Pace::kNeverWait}) {
+    system_.Reset();
+    LateMasks masks(pace, network_, system_);
+    const TrackedFrame first = Track(0);
+    masks.AfterFrame(first, white);
+    masks.Finish();
+    EXPECT_EQ(system_.object_counts().frames_with_masks, 0U);
+    EXPECT_TRUE(system_.AddMasks(first.frame, network_.Make(colour_).value()));
+    EXPECT_EQ(DetectionsOfFirstKeyframe(), 1U);
+  }
+  EXPECT_EQ(network_.work().failures, 2U);
 }
 
 }  // namespace

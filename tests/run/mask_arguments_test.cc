@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "files/read_file.h"
+#include "hullslam/segmentation/segmenter.h"
 #include "support/made_network.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
@@ -68,6 +69,21 @@ TEST_F(SegmentOption, MakesTheMasksThatTheCommandSegmentWrites) {
   EXPECT_EQ(Summary("a")["provenance"]["masks_format"], "network");
 }
 
+TEST_F(SegmentOption, TheSummaryNamesTheNetworkAndItsWork) {
+  ASSERT_EQ(Run("a", {"--segment", network_.string(), "--segment-every", "3"}).exit_code, 0);
+  const nlohmann::json network = Summary("a")["provenance"]["network"];
+  EXPECT_EQ(network["path"], network_.string());
+  EXPECT_EQ(network["hash"], Segmenter(network_).network_hash());
+  EXPECT_EQ(network["every"], 3);
+  EXPECT_EQ(network["classes"], (nlohmann::json{"red", "blue"}));
+  EXPECT_GE(network["images"], kFrames / 3);
+  EXPECT_EQ(network["failures"], 0);
+  EXPECT_GT(Summary("a")["timing"]["stages_ms"]["segment"]["median"], 0.0);
+  ASSERT_EQ(Run("b", {}).exit_code, 0);
+  EXPECT_TRUE(Summary("b")["provenance"]["network"].is_null());
+  EXPECT_FALSE(Summary("b")["timing"]["stages_ms"].contains("segment"));
+}
+
 TEST_F(SegmentOption, KeyframesGetMasksIfOnlyEveryNthFrameIsAskedFor) {
   const std::vector<std::string> arguments = {"--segment", network_.string(), "--segment-every",
                                               "100"};
@@ -81,6 +97,7 @@ TEST_F(SegmentOption, MasksComeLaterInRealTime) {
   const ProgramResult result = Run("a", {"--segment", network_.string(), "--realtime"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_GE(Summary("a")["objects"]["detections"], 1);
+  EXPECT_TRUE(Summary("a")["provenance"]["network"]["every"].is_null());
 }
 
 TEST_F(SegmentOption, BadUseIsRefusedBeforeAnythingIsWritten) {

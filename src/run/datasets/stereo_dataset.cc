@@ -29,9 +29,13 @@ void CheckPairs(const std::filesystem::path& path, const ImageSequence& sequence
   constexpr size_t kPairs = 3;
   PairCheck check;
   for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
-    const ImageInput pair =
-        sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
-    check.Add(pair.grey, pair.right);
+    try {
+      const ImageInput pair =
+          sequence.load(sequence.frames[i * (sequence.frames.size() - 1) / kPairs], camera);
+      check.Add(pair.grey, pair.right);
+    } catch (const InputError&) {  // the run will report this pair
+      continue;
+    }
   }
   if (const auto fault = check.FindFault()) {
     throw InputError(path.string() + ": " + *fault);

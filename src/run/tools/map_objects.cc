@@ -178,15 +178,14 @@ void PrintInputs(const MappingInputs& inputs, const SequenceMasks& masks) {
   Print("{}\n", masks.Describe());
 }
 
-// Adds all views to the mapper. Returns false if a signal ended it early.
-bool MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
-            const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
-            const SequenceMasks& masks, KnownPoseMapper& run) {
-  Progress progress(frames.size(), arguments.quiet);
+// Adds the views to the mapper. Returns false if a signal ended it early. Throws InputError for a
+// view that cannot be used; the views before it have been added.
+bool MapViews(const MapObjectsArguments& arguments, const SystemOptions& options,
+              const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
+              const SequenceMasks& masks, Progress& progress, KnownPoseMapper& run) {
   bool is_depth_checked = false;
   for (const ChosenFrame& view : views) {
     if (IsInterrupted()) {
-      progress.Clear();
       return false;
     }
     const FramePaths& frame = frames[view.frame];
@@ -198,8 +197,31 @@ bool MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
     run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame), depth);
     progress.Show(view.frame + 1);
   }
-  progress.Clear();
   return true;
+}
+
+// How the mapping ended.
+struct MappingEnd {
+  bool was_interrupted = false;
+  std::optional<std::string> input_failure = {};  // what was wrong with a view
+};
+
+MappingEnd MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
+                  const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
+                  const SequenceMasks& masks, KnownPoseMapper& run) {
+  Progress progress(frames.size(), arguments.quiet);
+  MappingEnd end;
+  try {
+    end.was_interrupted = !MapViews(arguments, options, frames, views, masks, progress, run);
+  } catch (const InputError& error) {
+    if (run.map().keyframes().empty()) {
+      progress.Clear();
+      throw;
+    }
+    end.input_failure = error.what();
+  }
+  progress.Clear();
+  return end;
 }
 
 RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& inputs,
@@ -238,10 +260,16 @@ void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const Object
   output.Commit();
 }
 
-std::string DescribeInterruption(const RunSummary& summary, size_t views) {
-  return fmt::format(
-      "the run was interrupted after {} of {} views; the results so far were written",
-      summary.map.keyframes, views);
+// Why the run ended before its end; empty if it did not.
+std::string DescribeEnd(const RunSummary& summary, size_t views) {
+  if (!summary.provenance.input_failure && !summary.provenance.interrupted) {
+    return {};
+  }
+  return fmt::format("{} after {} of {} views; the results so far were written",
+                     summary.provenance.input_failure
+                         ? *summary.provenance.input_failure + "; the run ended"
+                         : "the run was interrupted",
+                     summary.map.keyframes, views);
 }
 
 std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments) {
@@ -275,7 +303,7 @@ int RunMapObjects(int argc, char** argv) {
   }
   const auto start = std::chrono::steady_clock::now();
   KnownPoseMapper run(options);
-  const bool is_complete = MapAll(arguments, options, frames, views, masks, run);
+  const MappingEnd end = MapAll(arguments, options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectResults report = MeasuredObjects(run.map(), camera, arguments.sequence);
@@ -285,7 +313,8 @@ int RunMapObjects(int argc, char** argv) {
   counts.frames_with_masks = frames.size() - masks.without_masks();
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
-  summary.provenance.interrupted = !is_complete;
+  summary.provenance.interrupted = end.was_interrupted;
+  summary.provenance.input_failure = end.input_failure;
   const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
   WriteOutputs(output, run, report, scene, summary);
   if (!arguments.quiet) {
@@ -297,7 +326,8 @@ int RunMapObjects(int argc, char** argv) {
   const std::string unreported = arguments.report ? WriteReport(output.path(), run.map(), options,
                                                                 inputs.sequence, arguments.quiet)
                                                   : "";
-  return FailIfAny({is_complete ? "" : DescribeInterruption(summary, views.size()), unreported});
+  const int code = FailIfAny({DescribeEnd(summary, views.size()), unreported});
+  return end.input_failure ? kBadInput : code;
 }
 
 }  // namespace hullslam
