@@ -274,7 +274,7 @@ TEST_F(InputFailure, DepthOfMappedObjects) {
                                folder_.path() / "masks",
                                "--min-distance",
                                "0.005"};
-  const ProgramResult result = Run("map_objects", arguments);
+  const ProgramResult result = Run("hullslam map-objects", arguments);
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find(bad), std::string::npos) << result.errors;
   EXPECT_NE(result.errors.find(fmt::format("after {} of {} views", kBad, kFailureFrames)),
