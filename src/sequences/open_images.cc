@@ -50,7 +50,7 @@ ImageSequence OpenFolder(const fs::path& folder) {
     return OpenEurocSequence(folder).images;
   }
   if (Exists(folder / "image_0") || Exists(folder / "image_2")) {
-    return OpenKittiPairs(folder).images;
+    return OpenKittiImages(folder).images;
   }
   if (Exists(folder / "left") && Exists(folder / "right")) {
     return OpenStereoFolder(folder);

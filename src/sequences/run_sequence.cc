@@ -59,6 +59,10 @@ ImageSequence OpenEurocStereo(const Reopening& opening) {
 
 ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
 
+ImageSequence OpenKittiLeft(const Reopening& opening) {
+  return OpenKittiImages(opening.path).images;
+}
+
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");
   const std::string rate = opening.Choice("frames_per_second");
@@ -101,15 +105,16 @@ struct NamedDataset {
   ImageSequence (*open)(const Reopening& opening);
 };
 
-constexpr std::array<NamedDataset, 9> kDatasets = {{{"tum", OpenTum},
-                                                    {"icl", OpenIcl},
-                                                    {"euroc", OpenEuroc},
-                                                    {"euroc_stereo", OpenEurocStereo},
-                                                    {"kitti", OpenKitti},
-                                                    {"stereo_folder", OpenPairs},
-                                                    {"bag", OpenBag},
-                                                    {"bag_stereo", OpenBagStereo},
-                                                    {"video", OpenVideo}}};
+constexpr std::array<NamedDataset, 10> kDatasets = {{{"tum", OpenTum},
+                                                     {"icl", OpenIcl},
+                                                     {"euroc", OpenEuroc},
+                                                     {"euroc_stereo", OpenEurocStereo},
+                                                     {"kitti", OpenKitti},
+                                                     {"kitti_left", OpenKittiLeft},
+                                                     {"stereo_folder", OpenPairs},
+                                                     {"bag", OpenBag},
+                                                     {"bag_stereo", OpenBagStereo},
+                                                     {"video", OpenVideo}}};
 
 }  // namespace
 

@@ -49,8 +49,22 @@ std::map<std::string, Projection> ReadProjections(const fs::path& file) {
   return projections;
 }
 
-PinholeCamera CameraOf(const fs::path& file, const std::string& left_name,
-                       const std::string& right_name) {
+PinholeCamera LeftCameraOf(const Projection& p) {
+  return {.fx = p[0], .fy = p[5], .cx = p[2], .cy = p[6]};
+}
+
+PinholeCamera CameraOf(const fs::path& file, const std::string& name) {
+  const std::map<std::string, Projection> projections = ReadProjections(file);
+  const auto found = projections.find(name);
+  if (found == projections.end()) {
+    throw InputError(
+        fmt::format("{}: has no row '{}:', expected a calib.txt of KITTI", file.string(), name));
+  }
+  return LeftCameraOf(found->second);
+}
+
+PinholeCamera CameraOfPair(const fs::path& file, const std::string& left_name,
+                           const std::string& right_name) {
   const std::map<std::string, Projection> projections = ReadProjections(file);
   const auto left = projections.find(left_name);
   const auto right = projections.find(right_name);
@@ -58,9 +72,8 @@ PinholeCamera CameraOf(const fs::path& file, const std::string& left_name,
     throw InputError(fmt::format("{}: has no rows '{}:' and '{}:', expected a calib.txt of KITTI",
                                  file.string(), left_name, right_name));
   }
-  const Projection& p = left->second;
-  const PinholeCamera camera{
-      .fx = p[0], .fy = p[5], .cx = p[2], .cy = p[6], .bf = p[3] - right->second[3]};
+  PinholeCamera camera = LeftCameraOf(left->second);
+  camera.bf = left->second[3] - right->second[3];
   if (!(camera.bf > 0.0)) {
     throw InputError(fmt::format(
         "{}: camera {} is {:g} m to the right of camera {}, expected more than 0: left and right "
@@ -76,8 +89,9 @@ std::vector<double> ReadTimes(const fs::path& file) {
   return times;
 }
 
-std::vector<FramePaths> ListKittiPairs(const fs::path& folder, const fs::path& left,
-                                       const fs::path& right, std::vector<std::string>& warnings) {
+// `right` is the folder of the right images; empty for the left ones alone.
+std::vector<FramePaths> ListKittiImages(const fs::path& folder, const fs::path& left,
+                                        const fs::path& right, std::vector<std::string>& warnings) {
   const fs::path times_file = folder / "times.txt";
   const std::vector<double> times = ReadTimes(times_file);
   const std::vector<fs::path> images = ListImages(left);
@@ -88,7 +102,9 @@ std::vector<FramePaths> ListKittiPairs(const fs::path& folder, const fs::path& l
   ListedFrames list;
   for (size_t i = 0; i < images.size(); ++i) {
     FramePaths frame{times[i], images[i]};
-    frame.right = right / images[i].filename();
+    if (!right.empty()) {
+      frame.right = right / images[i].filename();
+    }
     const TextRow row{times_file, static_cast<int>(i) + 1, {}};
     AddFrame(row, std::move(frame), list);
   }
@@ -132,6 +148,17 @@ void SetSize(const fs::path& image, PinholeCamera& camera) {
   camera.height = first.rows;
 }
 
+// The steps after the frames were listed and the intrinsics were read.
+void FinishKitti(const fs::path& folder, const FrameSelection& selection, ImageSequence& images,
+                 CameraCalibration& calibration) {
+  constexpr double kRate = 10.0;  // KITTI's
+  calibration.frames_per_second = MeanRate(images.frames, kRate);
+  SetSize(images.frames.front().image, calibration.camera);
+  images.groundtruth = FindKittiTruth(folder);
+  SelectFrames(folder, selection, images);
+  LeaveOutMissing(images);
+}
+
 // ---- folders
 
 std::vector<FramePaths> PairByName(const fs::path& left_folder, const fs::path& right_folder,
@@ -166,16 +193,22 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
   const auto [left, right] = FindKittiFolders(folder);
   StereoSequence sequence;
   sequence.images.dataset = "kitti";
-  sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left, "P" + right);
-  sequence.images.frames = ListKittiPairs(folder, folder / ("image_" + left),
-                                          folder / ("image_" + right), sequence.images.warnings);
-  constexpr double kRate = 10.0;  // KITTI's
-  sequence.calibration.frames_per_second = MeanRate(sequence.images.frames, kRate);
-  SetSize(sequence.images.frames.front().image, sequence.calibration.camera);
-  sequence.images.groundtruth = FindKittiTruth(folder);
-  SelectFrames(folder, selection, sequence.images);
-  LeaveOutMissing(sequence.images);
+  sequence.calibration.camera = CameraOfPair(folder / "calib.txt", "P" + left, "P" + right);
+  sequence.images.frames = ListKittiImages(folder, folder / ("image_" + left),
+                                           folder / ("image_" + right), sequence.images.warnings);
+  FinishKitti(folder, selection, sequence.images, sequence.calibration);
   LoadPairs(nullptr, sequence.images);
+  return sequence;
+}
+
+LeftSequence OpenKittiImages(const fs::path& folder, const FrameSelection& selection) {
+  const std::string left = FindKittiFolders(folder).first;
+  LeftSequence sequence;
+  sequence.images.dataset = "kitti_left";
+  sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left);
+  sequence.images.frames =
+      ListKittiImages(folder, folder / ("image_" + left), {}, sequence.images.warnings);
+  FinishKitti(folder, selection, sequence.images, sequence.calibration);
   return sequence;
 }
 

@@ -62,6 +62,7 @@ void FuzzKittiCalibration(std::string_view bytes) {
   fs::create_directory(folder.path() / "image_0");
   fs::create_directory(folder.path() / "image_1");
   Try([] { OpenKittiPairs(folder.path()); });
+  Try([] { OpenKittiImages(folder.path()); });
 }
 
 void FuzzEurocSensor(std::string_view bytes) {

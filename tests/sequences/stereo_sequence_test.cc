@@ -74,6 +74,35 @@ TEST_F(StereoSequenceTest, TheTruthOfKittiMayLieBesideTheSequences) {
   EXPECT_EQ(ReadGroundtruth(OpenKittiPairs(sequence).images)->size(), 2u);
 }
 
+TEST_F(StereoSequenceTest, TheLeftCameraOfKittiNeedsNoRightOne) {
+  WriteKitti();
+  fs::remove_all(folder_.path() / "image_1");
+  folder_.Write("calib.txt", "P0: 700 0 10 0 0 701 5 0 0 0 1 0\n");
+  folder_.Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0.5\n");
+  const LeftSequence sequence = OpenKittiImages(folder_.path());
+  const PinholeCamera& camera = sequence.calibration.camera;
+  EXPECT_EQ(camera.fx, 700.0);
+  EXPECT_EQ(camera.fy, 701.0);
+  EXPECT_EQ(camera.bf, PinholeCamera().bf);
+  EXPECT_DOUBLE_EQ(sequence.calibration.frames_per_second, 10.0);
+  ASSERT_EQ(sequence.images.frames.size(), 2u);
+  EXPECT_TRUE(sequence.images.frames[1].right.empty());
+  const ImageInput image = sequence.images.load(sequence.images.frames[1], camera);
+  EXPECT_EQ(image.timestamp, 0.1);
+  EXPECT_EQ(image.grey.at<uint8_t>(0, 0), 100);
+  EXPECT_TRUE(image.right.empty());
+  EXPECT_EQ(ReadGroundtruth(sequence.images)->size(), 2u);
+  EXPECT_EQ(OpenKittiImages(folder_.path(), {.first = 1}).images.frames.size(), 1u);
+}
+
+TEST_F(StereoSequenceTest, TheColourImagesOfKittiHaveTheirOwnProjection) {
+  WriteKitti();
+  fs::rename(folder_.path() / "image_0", folder_.path() / "image_2");
+  ExpectInputError([&] { OpenKittiImages(folder_.path()); }, {"calib.txt", "'P2:'"});
+  folder_.Write("calib.txt", std::string(kCalibration) + "P2: 650 0 11 30 0 650 5 0 0 0 1 0\n");
+  EXPECT_EQ(OpenKittiImages(folder_.path()).calibration.camera.fx, 650.0);
+}
+
 TEST_F(StereoSequenceTest, BrokenFilesOfKittiAreRefused) {
   ExpectKittiError({"has no folder image_0", "KITTI"});
   WriteKitti();

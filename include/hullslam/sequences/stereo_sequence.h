@@ -24,6 +24,17 @@ struct StereoSequence {
 StereoSequence OpenKittiPairs(const std::filesystem::path& folder,
                               const FrameSelection& selection = {});
 
+// The images of one camera of a stereo sequence.
+struct LeftSequence {
+  ImageSequence images;
+  CameraCalibration calibration;
+};
+
+// Opens the left camera of such a sequence, `image_0` or `image_2`. Neither the right images nor
+// their projection need exist.
+LeftSequence OpenKittiImages(const std::filesystem::path& folder,
+                             const FrameSelection& selection = {});
+
 struct StereoFolderOptions {
   // The calibration of the images as read. Null: they are rectified.
   std::shared_ptr<const StereoRectifier> rectifier = nullptr;
