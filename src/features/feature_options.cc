@@ -31,17 +31,22 @@ int FeatureOptions::LevelsFor(int width, int height) const {
 }
 
 // The number of features grows by the scale factor from level to finer level. In a larger image,
-// the usual number is that of the coarsest 8 levels, which show what a usual image shows, and the
-// finer ones have theirs in addition. In a smaller image a pixel is a larger angle, so each
-// landmark is less precise. The precision of a pose from N landmarks is that of one over the root
-// of N, so N grows with the square of the angle.
+// the coarsest 8 levels show what a usual image shows, and the finer ones have their features in
+// addition. These 8 levels have the usual number of features per area, so a wide image has more of
+// them, which tell of the left and the right what a usual image does not show; but never fewer than
+// a usual image. In a smaller image a pixel is a larger angle, so each landmark is less precise.
+// The precision of a pose from N landmarks is that of one over the root of N, so N grows with the
+// square of the angle.
 int FeatureOptions::FeaturesFor(int width, int height) const {
   const FeatureOptions usual;
   const auto sum = [this](int count) { return std::pow(scale_factor, count) - 1.0; };
   const int levels = std::max(LevelsFor(width, height), usual.level_count);
+  const double enlargement = std::pow(scale_factor, levels - usual.level_count);
+  const double area =
+      std::max(1.0, (width / enlargement) * (height / enlargement) / (kUsualWidth * kUsualHeight));
   const double angle = std::max(1.0, kUsualWidth / std::max(width, height));
-  return static_cast<int>(
-      std::lround(usual.feature_count * sum(levels) / sum(usual.level_count) * angle * angle));
+  return static_cast<int>(std::lround(usual.feature_count * area * sum(levels) /
+                                      sum(usual.level_count) * angle * angle));
 }
 
 void FeatureOptions::Bind(OptionTable& options) {

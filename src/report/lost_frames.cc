@@ -52,7 +52,8 @@ std::string_view ToString(LossReason reason) {
 std::string_view AdviceFor(LossReason reason) {
   switch (reason) {
     case LossReason::kNoMapYet:
-      return "begin with a sideways motion in front of a textured scene";
+      return "begin with a sideways motion in front of a textured scene; in a car, which can only "
+             "go forward, --set ORBextractor.nFeatures=2000";
     case LossReason::kTooFewFeatures:
       return "the images are dark, blurred, covered or plain: more light, a shorter exposure, or "
              "--set ORBextractor.minThFAST=3";

@@ -33,7 +33,10 @@ std::string DescribeFailures(const InitialisationSummary& initialisation) {
   const bool lacks_parallax =
       !reasons.empty() &&
       reasons.front().second.ends_with(ToString(InitialisationFailure::kTooLittleParallax));
-  return text + (lacks_parallax ? "; the camera must move sideways" : "");
+  return text + (lacks_parallax
+                     ? "; the camera must move sideways, or, if it can only go forward, as in a "
+                       "car, have more features: --set ORBextractor.nFeatures=2000"
+                     : "");
 }
 
 // Of a camera that was lost and went on elsewhere; nothing if the map is in one piece.

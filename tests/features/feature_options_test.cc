@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "hullslam/util/error.h"
 
@@ -67,16 +68,38 @@ TEST(FeatureOptions, ALargerImageHasMoreLevelsUntilItsCoarsestIsTheUsualOne) {
   EXPECT_EQ(options.LevelsFor(20000, 20000), 16) << "the largest number that can be set";
 }
 
-TEST(FeatureOptions, ALargerImageHasTheUsualFeaturesOnItsCoarsestLevels) {
-  const FeatureOptions options;
-  const int levels = options.LevelsFor(1920, 1080);
-  double share = 0.0;  // of the coarsest 8 levels; the number falls by 1.2 from level to level
+// The number of features on the coarsest 8 levels; the number falls by 1.2 from level to level.
+double FeaturesOfCoarsest(const FeatureOptions& options, int width, int height) {
+  const int levels = options.LevelsFor(width, height);
+  double share = 0.0;
   double all = 0.0;
   for (int level = 0; level < levels; ++level) {
     all += std::pow(1.2, -level);
     share += level >= levels - 8 ? std::pow(1.2, -level) : 0.0;
   }
-  EXPECT_NEAR(options.FeaturesFor(1920, 1080) * share / all, 1000.0, 1.0);
+  return options.FeaturesFor(width, height) * share / all;
+}
+
+TEST(FeatureOptions, ALargerImageHasTheUsualFeaturesOnItsCoarsestLevels) {
+  const FeatureOptions options;
+  for (const int height : {481, 720, 960, 1080}) {
+    EXPECT_NEAR(FeaturesOfCoarsest(options, height * 4 / 3, height), 1000.0, 1.0) << height;
+  }
+}
+
+TEST(FeatureOptions, AWideImageHasTheUsualFeaturesPerAreaOfTheseLevels) {
+  const FeatureOptions options;
+  for (const auto& [width, height] :
+       {std::pair(1226, 370), std::pair(1920, 1080), std::pair(848, 480), std::pair(2560, 720)}) {
+    const double scale = std::pow(1.2, options.LevelsFor(width, height) - 8);
+    const double area = (width / scale) * (height / scale);
+    EXPECT_GT(area, 640.0 * 480.0);
+    EXPECT_NEAR(FeaturesOfCoarsest(options, width, height) / area, 1000.0 / (640.0 * 480.0), 1e-5)
+        << width << "x" << height;
+    EXPECT_EQ(options.FeaturesFor(width, height), options.FeaturesFor(height, width));
+  }
+  EXPECT_EQ(options.FeaturesFor(1226, 370), 1477);
+  EXPECT_EQ(options.FeaturesFor(640, 400), 1000) << "no fewer than in a usual image";
 }
 
 TEST(FeatureOptions, ASmallerImageHasMoreFeaturesBecauseItsPixelsAreLargerAngles) {
