@@ -102,11 +102,12 @@ std::string DecompressZstd(std::string_view bytes, uint64_t most_bytes, const st
 
 }  // namespace
 
-ExpansionLimit::ExpansionLimit(std::filesystem::path file) : file_(std::move(file)) {
+ExpansionLimit::ExpansionLimit(std::filesystem::path file, uint64_t beside)
+    : file_(std::move(file)) {
   constexpr uint64_t kMostExpansion = 100;
   std::error_code error;
   const uint64_t size = std::filesystem::file_size(file_, error);
-  most_ = kMostBagBytes + (error ? 0 : kMostExpansion * size);
+  most_ = kMostBagBytes + kMostExpansion * (beside + (error ? 0 : size));
 }
 
 void ExpansionLimit::Add(uint64_t decompressed) {

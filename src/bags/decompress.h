@@ -19,7 +19,8 @@ constexpr uint64_t kMostBagBytes = 256'000'000;
 // are most of a recording, compress by less than that; streams of zeros by a thousand and more.
 class ExpansionLimit {
  public:
-  explicit ExpansionLimit(std::filesystem::path file);
+  // `beside`: the bytes of other files that belong to the file.
+  explicit ExpansionLimit(std::filesystem::path file, uint64_t beside = 0);
   // Throws InputError with the file if there are too many.
   void Add(uint64_t decompressed);
 

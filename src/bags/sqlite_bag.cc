@@ -4,45 +4,64 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <algorithm>
-#include <array>
 #include <system_error>
 #include <utility>
 
+#include "bags/read_only_vfs.h"
+#include "files/canonical_path.h"
+#include "files/random_access_file.h"
 #include "hullslam/util/error.h"
 #include "util/printable.h"
 
 namespace hullslam {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string TextOf(sqlite3_stmt* statement, int column) {
   const unsigned char* const text = sqlite3_column_text(statement, column);
   return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
-// The files beside a database with changes that are not in it yet.
-constexpr std::array<const char*, 2> kChanges = {"-wal", "-journal"};
-
-bool HasChanges(const std::filesystem::path& path) {
-  return std::any_of(kChanges.begin(), kChanges.end(), [&](const char* ending) {
-    std::error_code error;
-    const uintmax_t size = std::filesystem::file_size(path.string() + ending, error);
-    return !error && size > 0;
-  });
+// The size of a file beside a recording; 0 if there is none. A link there is not followed, because
+// it may lead anywhere, and is not ignored, because messages may be behind it.
+uint64_t SizeBeside(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(file, error);
+  if (!fs::exists(status)) {
+    return 0;
+  }
+  if (!fs::is_regular_file(status)) {
+    throw InputError(fmt::format(
+        "{}: is {}, expected the file that the recorder wrote, or nothing", file.string(),
+        fs::is_symlink(status) ? "a link, which is not followed" : "not a regular file"));
+  }
+  const uint64_t size = fs::file_size(file, error);
+  return error ? 0 : size;
 }
 
-// An immutable database is read without locks and without files beside it, which SQLite else writes
-// for the mode WAL, even to read.
-std::string UriOf(const std::filesystem::path& path, bool is_immutable) {
-  std::string uri = "file://";
-  for (const char c : std::filesystem::absolute(path).string()) {
-    if (c == '%' || c == '?' || c == '#') {
-      uri += fmt::format("%{:02x}", static_cast<unsigned char>(c));
-    } else {
-      uri += c;
-    }
+// SQLite overwrites the first bytes of a journal with zeros when the change is finished.
+void CheckJournal(const fs::path& path) {
+  const fs::path journal = path.string() + "-journal";
+  if (SizeBeside(journal) > 0 && RandomAccessFile(journal).Read(0, 1) != std::string(1, '\0')) {
+    throw InputError(fmt::format(
+        "{}: its recorder was stopped in the middle of a change, or is still writing; the file {} "
+        "beside it can undo the change, but is not used here; if you trust where the recording "
+        "comes from, undo it with `sqlite3 FILE .tables`, and try again",
+        path.string(), journal.filename().string()));
   }
-  return uri + (is_immutable ? "?immutable=1" : "");
+}
+
+// The absolute path under which the recording is opened: of a link to a recording, the one of the
+// two that has a log beside it.
+fs::path PathWithLog(const fs::path& path) {
+  std::error_code error;
+  const fs::path named = fs::absolute(path, error);
+  const fs::path real = CanonicalPath(path);
+  CheckJournal(named);
+  CheckJournal(real);
+  const bool is_log_here = SizeBeside(named.string() + "-wal") > 0;
+  return is_log_here ? named : real;
 }
 
 }  // namespace
@@ -51,13 +70,12 @@ void SqliteBag::Close::operator()(sqlite3* database) const { sqlite3_close(datab
 
 void SqliteBag::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
-SqliteBag::SqliteBag(std::filesystem::path path) : path_(std::move(path)), expansion_(path_) {
-  const bool has_changes = HasChanges(path_);
-  const std::filesystem::path opened = has_changes ? CopyWithChanges() : path_;
+SqliteBag::SqliteBag(std::filesystem::path path)
+    : path_(std::move(path)),
+      opened_(PathWithLog(path_)),
+      expansion_(path_, SizeBeside(opened_.string() + "-wal")) {
   sqlite3* database = nullptr;
-  const int code = sqlite3_open_v2(
-      UriOf(opened, !has_changes).c_str(), &database,
-      SQLITE_OPEN_URI | (has_changes ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY), nullptr);
+  const int code = sqlite3_open_v2(opened_.c_str(), &database, SQLITE_OPEN_READONLY, ReadOnlyVfs());
   database_.reset(database);
   if (code != SQLITE_OK) {
     Fail();
@@ -66,26 +84,8 @@ SqliteBag::SqliteBag(std::filesystem::path path) : path_(std::move(path)), expan
   sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(kMostBagBytes));
+  Next(Prepare("PRAGMA locking_mode = EXCLUSIVE"));  // needs no memory that processes share
   CheckTables();
-}
-
-std::filesystem::path SqliteBag::CopyWithChanges() {
-  try {
-    copy_.emplace(std::filesystem::temp_directory_path(), "hullslam_bag_");
-    std::filesystem::path copy = copy_->content() / "bag.db3";
-    std::filesystem::copy_file(path_, copy);
-    for (const char* const ending : kChanges) {
-      if (std::filesystem::exists(path_.string() + ending)) {
-        std::filesystem::copy_file(path_.string() + ending, copy.string() + ending);
-      }
-    }
-    return copy;
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw InputError(fmt::format(
-        "{}: was not closed by its recorder, and cannot be copied to apply the changes beside it: "
-        "{}",
-        path_.string(), error.code().message()));
-  }
 }
 
 void SqliteBag::Fail() const {

@@ -4,12 +4,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "bags/bag.h"
 #include "bags/decompress.h"
-#include "files/staging_folder.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -18,9 +16,10 @@ namespace hullslam {
 
 // A file of rosbag2 in the format of SQLite: the tables `topics` (id, name, type,
 // serialization_format) and `messages` (id, topic_id, timestamp, data). Messages that rosbag2
-// compressed one by one with zstd are recognised by their first bytes. Nothing is written beside
-// the file. If a recorder has left changes beside it that are not in it yet (-wal or -journal), a
-// copy with these changes is read.
+// compressed one by one with zstd are recognised by their first bytes. Nothing is written or
+// deleted. Messages that a recorder has left in the log beside the file (-wal) are read. A file
+// with a journal beside it (-journal) holds a change that was never finished, and is refused,
+// because only SQLite can undo the change, and a journal can make it delete any file of the user.
 class SqliteBag final : public Bag {
  public:
   explicit SqliteBag(std::filesystem::path path);
@@ -37,8 +36,6 @@ class SqliteBag final : public Bag {
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 
   [[noreturn]] void Fail() const;
-  // Copies the database and the changes beside it.
-  std::filesystem::path CopyWithChanges();
   void CheckTables() const;
   Statement Prepare(const char* text) const;
   // Goes to the next row; returns false behind the last one.
@@ -49,7 +46,7 @@ class SqliteBag final : public Bag {
   std::map<int64_t, size_t> ReadTopics();
 
   std::filesystem::path path_;
-  std::optional<StagingFolder> copy_;  // of a database that was not closed
+  std::filesystem::path opened_;  // the same file, with its log beside it
   ExpansionLimit expansion_;
   std::unique_ptr<sqlite3, Close> database_;
   Statement read_;

@@ -77,6 +77,9 @@ TEST(ExpansionLimitTest, AFileMayBecomeAHundredTimesItsSizeAndOneChunkMore) {
   limit.Add(100'000);
   ExpectInputError([&] { limit.Add(1); },
                    {"a.mcap: its compressed parts have more than 256100000 bytes"});
+  ExpansionLimit with_log(file, 500);
+  with_log.Add(kMostBagBytes + 150'000);
+  EXPECT_THROW(with_log.Add(1), InputError);
 }
 
 }  // namespace
