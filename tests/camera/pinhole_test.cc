@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -209,6 +210,69 @@ TEST(Pinhole, TheMatrixProjectsAsProjectDoes) {
   const Eigen::Vector3d point(0.3, -0.2, 1.7);
   const Eigen::Vector3d pixel = camera.Matrix() * point;
   EXPECT_LT((pixel.hnormalized() - camera.Project(point)).norm(), 1e-12);
+}
+
+// Laws of every lens.
+class Lens : public testing::TestWithParam<TestCamera> {
+ protected:
+  const PinholeCamera& camera() const { return GetParam().sensor.camera; }
+  // Raw pixels of the image that the lens shows.
+  std::vector<Eigen::Vector2d> SeenPixels() const {
+    std::vector<Eigen::Vector2d> seen;
+    for (const Eigen::Vector2d& raw : PixelsOf(camera())) {
+      if (camera().SeesRaw(raw)) {
+        seen.push_back(raw);
+      }
+    }
+    return seen;
+  }
+};
+
+HULLSLAM_WITH_ALL_CAMERAS(Lens);
+
+TEST_P(Lens, HasNoFault) { EXPECT_EQ(camera().FindFault(), ""); }
+
+TEST_P(Lens, APixelComesBackFromItsUndistortedOne) {
+  for (const Eigen::Vector2d& raw : SeenPixels()) {
+    EXPECT_LT((camera().Distort(camera().Undistort(raw)) - raw).norm(), 1e-6) << raw.transpose();
+  }
+}
+
+TEST_P(Lens, TheJacobianIsTheSlopeOfTheDistortion) {
+  constexpr double kStep = 1e-3;
+  for (const Eigen::Vector2d& raw : SeenPixels()) {
+    const Eigen::Vector2d pixel = camera().Undistort(raw);
+    const Eigen::Matrix2d jacobian = camera().DistortionJacobian(pixel);
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
+      const Eigen::Vector2d slope =
+          (camera().Distort(pixel + step) - camera().Distort(pixel - step)) / (2.0 * kStep);
+      EXPECT_LT((slope - jacobian.col(axis)).norm(), 1e-6) << raw.transpose();
+    }
+  }
+}
+
+TEST_P(Lens, TheImageBeginsAtItsFirstPixelAndEndsBeforeItsSize) {
+  EXPECT_TRUE(camera().SeesRaw({0.0, camera().cy}));
+  EXPECT_TRUE(camera().SeesRaw({camera().cx, 0.0}));
+  EXPECT_TRUE(camera().SeesRaw({639.999, camera().cy}));
+  EXPECT_TRUE(camera().SeesRaw({camera().cx, 479.999}));
+  EXPECT_FALSE(camera().SeesRaw({640.0, camera().cy}));
+  EXPECT_FALSE(camera().SeesRaw({camera().cx, 480.0}));
+  EXPECT_FALSE(camera().SeesRaw({-0.001, camera().cy}));
+  EXPECT_FALSE(camera().SeesRaw({camera().cx, -0.001}));
+}
+
+// Columns below 0 stand for keypoints without depth.
+TEST_P(Lens, TheRightColumnOfAPixelThatIsNotVeryNearIsNotNegative) {
+  for (const Eigen::Vector2d& raw : SeenPixels()) {
+    const double u = camera().Undistort(raw).x();
+    const double nearest = camera().IsFisheye() ? 0.021 : camera().bf / std::max(u, 1.0) * 1.001;
+    if (u >= 1.0 || camera().IsFisheye()) {
+      EXPECT_GE(camera().FarRight(u) - camera().bf / nearest, 0.0) << u;
+      EXPECT_LT(camera().FarRight(u) - camera().bf / (0.9 * nearest), 0.0) << u;
+    }
+  }
 }
 
 }  // namespace
