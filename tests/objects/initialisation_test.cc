@@ -9,6 +9,7 @@
 
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -100,6 +101,38 @@ TEST_F(Rays, MeetAtTheCentreOfASphere) {
                 .norm(),
             0.01);
   EXPECT_NEAR(sphere->half_axes.x(), 0.1, 0.01);
+}
+
+class RaysThrough : public ::testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(RaysThrough);
+
+// Near the side of a fisheye's image, the undistorted image of a ball is much larger than in the
+// middle.
+TEST_P(RaysThrough, ABallNearTheSideOfTheImageHasItsSize) {
+  constexpr double kRadius = 0.06;  // m
+  const Sensor& sensor = GetParam().sensor;
+  const PinholeCamera& camera = sensor.camera;
+  const Eigen::Vector2d pixel = camera.Undistort({0.9 * camera.width, 0.6 * camera.height});
+  const MadeObject ball = MakeObject("ball", 2.5 * camera.Unproject(pixel, 1.0).normalized(),
+                                     Eigen::Vector3d::Constant(kRadius));
+  std::vector<Detection> detections;
+  std::vector<Rigid3> poses;
+  for (const Eigen::Vector3d& position :
+       {Eigen::Vector3d(0.0, 0.0, 0.0), {0.0, 0.5, 0.0}, {0.0, -0.3, -0.3}}) {
+    poses.emplace_back(Eigen::Quaterniond::Identity(), -position);
+    detections.push_back(Detect(ball, sensor, poses.back()));
+  }
+  std::vector<ResolvedObservation> observations;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    observations.push_back({KeyframeId(), poses[i], &detections[i]});
+  }
+  const auto sphere = StartFromRays(camera, observations, {});
+  ASSERT_TRUE(sphere);
+  EXPECT_LT(
+      (sphere->world_from_object.translation - ball.ellipsoid.world_from_object.translation).norm(),
+      0.02);
+  EXPECT_NEAR(sphere->half_axes.x(), kRadius, 0.1 * kRadius);
 }
 
 TEST_F(Rays, ThatAreParallelGiveNothing) { EXPECT_FALSE(Start(0.0)); }

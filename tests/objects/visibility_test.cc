@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "camera/kannala_brandt.h"
 #include "objects/made_objects.h"
 #include "support/test_cameras.h"
 
@@ -170,6 +171,27 @@ TEST_P(VisibilityWith, TheDepthsOnAWideObjectAreFoundAtItsEnds) {
   };
   EXPECT_EQ(visibility(50), LocationVisibility::kHidden);
   EXPECT_EQ(visibility(9000), LocationVisibility::kVisible);
+}
+
+// The image of a fisheye fills only a part of the box around its undistorted image.
+TEST(VisibilityOfAFisheye, IsThatOfItsImage) {
+  const Sensor sensor = FisheyeTestCamera().sensor;
+  const auto visibility = [&](const Eigen::Vector2d& raw) {
+    Ellipsoid ball;
+    const Eigen::Vector3d ray = RayOfRawPixel(sensor.camera, raw, LargestAngle(sensor.camera, 1.5));
+    ball.world_from_object.translation = 2.0 * ray;
+    ball.half_axes.setConstant(0.05);
+    Map map;
+    const ObjectId id = map.AddObject();
+    const KeyframeId keyframe = AddObserver(map, sensor, Rigid3(), {{"ball", ball}});
+    map.AddObservation(id, keyframe, 0);
+    map.MutableObject(id).ellipsoid = ball;
+    return FindVisibility(map, sensor, keyframe, map.objects().At(id), {});
+  };
+  EXPECT_EQ(visibility({590.0, 243.0}), LocationVisibility::kVisible);
+  EXPECT_EQ(visibility({318.0, 440.0}), LocationVisibility::kVisible);
+  // Below the image, but within the box, which reaches as far as its corners do.
+  EXPECT_EQ(visibility({318.0, 520.0}), LocationVisibility::kOutside);
 }
 
 class SeeingThrough : public Visibility {
