@@ -86,6 +86,24 @@ inline Detection Detect(const MadeObject& object, const Sensor& sensor,
   return detection;
 }
 
+// The line, which is a tangent of the ellipse, moved outwards by so many px of the image in which
+// distances are measured (Sensor::ToGrid).
+inline Line2 MovedInImage(const Sensor& sensor, const Ellipse& ellipse, const Line2& tangent,
+                          double pixels) {
+  const Eigen::Vector2d normal = tangent.normal;
+  const Eigen::Vector2d touching =
+      ellipse.center + ellipse.shape * normal / ellipse.HalfExtent(normal);
+  constexpr double kStep = 1e-3;
+  const Eigen::Vector2d along = kStep * Eigen::Vector2d(-normal.y(), normal.x());
+  const Eigen::Vector2d side = sensor.ToGrid(touching + along) - sensor.ToGrid(touching - along);
+  const Eigen::Vector2d outwards =
+      (sensor.ToGrid(touching + kStep * normal) - sensor.ToGrid(touching)) / kStep;
+  const double share = std::abs(outwards.dot(Eigen::Vector2d(-side.y(), side.x()).normalized()));
+  Line2 moved = tangent;
+  moved.offset -= pixels / share;
+  return moved;
+}
+
 // Adds a keyframe to the spanning tree of the map.
 inline KeyframeId AddToTree(Map& map, std::shared_ptr<const Frame> frame,
                             const Rigid3& cam_from_world) {

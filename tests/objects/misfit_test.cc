@@ -123,15 +123,7 @@ TEST_P(SpreadWith, ALineThatIsMovedInTheImageAsReadHasThisSpread) {
   Detection detection = Detect(object, sensor, Rigid3());
   const Ellipse ellipse = ProjectEllipsoid(camera.Matrix(), Rigid3(), object.ellipsoid).value();
   for (SilhouetteLine& line : detection.lines) {
-    const Eigen::Vector2d normal = line.line.normal;
-    const Eigen::Vector2d touching =
-        ellipse.center + ellipse.shape * normal / ellipse.HalfExtent(normal);
-    const Eigen::Vector2d along = 1e-3 * Eigen::Vector2d(-normal.y(), normal.x());
-    const Eigen::Vector2d side = sensor.ToGrid(touching + along) - sensor.ToGrid(touching - along);
-    const Eigen::Vector2d outwards =
-        (sensor.ToGrid(touching + 1e-3 * normal) - sensor.ToGrid(touching)) / 1e-3;
-    const double share = std::abs(outwards.dot(Eigen::Vector2d(-side.y(), side.x()).normalized()));
-    line.line.offset -= kMove / share;
+    line.line = MovedInImage(sensor, ellipse, line.line, kMove);
   }
   ObjectLandmark landmark;
   landmark.ellipsoid = object.ellipsoid;

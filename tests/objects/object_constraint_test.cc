@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "costs/object_cost_laws.h"
+#include "objects/made_objects.h"
+#include "support/test_cameras.h"
 
 namespace hullslam {
 namespace {
@@ -180,6 +182,37 @@ TEST_F(ObjectConstraintTest, HasTrueDerivatives) {
       ExpectTrueObjectGradient(*constraint.silhouette, state);
       ExpectTrueObjectGradient(*constraint.depth, state);
     }
+  }
+}
+
+class ObjectConstraintWith : public ::testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(ObjectConstraintWith);
+
+TEST_P(ObjectConstraintWith, TheResidualOfALineIsItsDistanceInTheImageAsRead) {
+  constexpr double kMove = 0.2;  // px
+  const Sensor& sensor = GetParam().sensor;
+  const MadeObject object = MakeObject("cup", {0.9, 0.4, 1.0}, {0.05, 0.06, 0.07}, 0.5);
+  Detection detection = Detect(object, sensor, Rigid3());
+  const Ellipse ellipse =
+      ProjectEllipsoid(sensor.camera.Matrix(), Rigid3(), object.ellipsoid).value();
+  detection.lines.resize(4);
+  for (SilhouetteLine& line : detection.lines) {
+    line.line = MovedInImage(sensor, ellipse, line.line, kMove);
+  }
+  ObjectConstraintOptions options;
+  options.sigma_px = 1.0;
+  options.misfit_factor = 0.0;
+  options.loss = RobustLoss::kNone;
+  const ObjectConstraint constraint =
+      MakeObjectConstraint(sensor.camera, {KeyframeId(), Rigid3(), &detection}, detection.lines,
+                           object.ellipsoid, 0.0, options);
+  SeenEllipsoid state;
+  state.ellipsoid = object.ellipsoid;
+  const Eigen::VectorXd residuals = ObjectResidualsOf(*constraint.silhouette, state);
+  ASSERT_EQ(residuals.size(), 4);
+  for (const double residual : residuals) {
+    EXPECT_NEAR(std::abs(residual), kMove, 0.04 * kMove);
   }
 }
 
