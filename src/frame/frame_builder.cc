@@ -169,7 +169,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
     unused_ = UnusedPixels(sensor.camera);
   }
   if (sensor.kind == SensorKind::kStereo) {
-    stereo_.emplace(features, sensor.camera);
+    stereo_.emplace(FeaturesOf(sensor, features), sensor.camera);
   }
   if (detection) {
     detector_.emplace(sensor.camera, depth, *detection, dynamic_classes_);

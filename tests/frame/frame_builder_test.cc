@@ -159,6 +159,19 @@ TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
   EXPECT_EQ(count(sensor_), kept);
 }
 
+// The left image keeps corners on straight edges, because they have a depth; so must the right one.
+TEST_F(FrameBuilderTest, BothImagesOfAPairKeepCornersOnStraightEdges) {
+  const ImageInput pair = MakePair();
+  const auto known = [&](bool keep_edges) {
+    FeatureOptions options = FewFeatures();
+    options.keep_edges = keep_edges;
+    const auto frame =
+        FrameBuilder(StereoSensor(), DepthOptions(), options).Build(pair, runner_).frame;
+    return std::ranges::count_if(frame->features.depth, [](float depth) { return depth > 0.0F; });
+  };
+  EXPECT_EQ(known(false), known(true));
+}
+
 TEST_F(FrameBuilderTest, MasksOfTheRightImageAddLines) {
   ImageInput pair = MakePair();
   pair.masks = {Square("cup", 30, 160, 50), Square("book", 200, 60, 80)};
