@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "frame/patch_fit.h"
 #include "util/median.h"
 
 namespace hullslam {
@@ -16,154 +17,8 @@ namespace {
 // The constants are those of ORB-SLAM2.
 constexpr int kMostDifferentBits = 75;  // descriptors that differ in more bits do not match
 constexpr float kRowReach = 2.0F;       // rows at the level of the right keypoint
-constexpr int kHalfPatch = 5;         // px at the level of the left keypoint; the patch has 11 x 11
-constexpr int kReach = 5;             // px; columns to each side in which the patch is shifted
-constexpr double kOutlier = 2.1;      // times the median: 1.5 sigma, with 1.4 medians per sigma
-constexpr double kLeastMedian = 1.0;  // grey levels; images without noise differ by roundings
-constexpr int kSide = 2 * kHalfPatch + 1;
-
-constexpr int kShifts = 2 * kReach + 1;
-
-// The pixels of a patch, row by row, less their mean, so that images of different brightness can be
-// compared.
-using Patch = std::array<float, size_t{kSide} * kSide>;
-
-bool IsInside(const cv::Mat& image, int x, int y) {
-  return x >= kHalfPatch && y >= kHalfPatch && x + kHalfPatch < image.cols &&
-         y + kHalfPatch < image.rows;
-}
-
-// The patch about a pixel that IsInside.
-Patch CutPatch(const cv::Mat& image, int x, int y) {
-  Patch patch;
-  float sum = 0.0F;
-  size_t i = 0;
-  for (int row = y - kHalfPatch; row <= y + kHalfPatch; ++row) {
-    const uint8_t* const pixels = image.ptr<uint8_t>(row) + x - kHalfPatch;
-    for (int column = 0; column < kSide; ++column) {
-      patch[i] = static_cast<float>(pixels[column]);
-      sum += patch[i++];
-    }
-  }
-  const float mean = sum / static_cast<float>(patch.size());
-  for (float& value : patch) {
-    value -= mean;
-  }
-  return patch;
-}
-
-// Gaussian weights about the middle, whose mean is 1. Beside a corner at the side of an object the
-// patch shows the background, whose disparity is smaller; so the weights fall to 1/e at its rim.
-Patch CentreWeights() {
-  Patch weights;
-  float sum = 0.0F;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const auto x = static_cast<float>(i % kSide - kHalfPatch);
-    const auto y = static_cast<float>(i / kSide - kHalfPatch);
-    weights[static_cast<size_t>(i)] = std::exp(-(x * x + y * y) / (kHalfPatch * kHalfPatch));
-    sum += weights[static_cast<size_t>(i)];
-  }
-  for (float& weight : weights) {
-    weight *= static_cast<float>(weights.size()) / sum;
-  }
-  return weights;
-}
-
-// One number per shift of the patch. The last ones are not used; they let a compiler work on eight
-// at a time.
-using PerShift = std::array<float, 16>;
-static_assert(kShifts <= PerShift().size());
-
-// The pixels that the shifted patches cover, with columns to spare for the numbers that are not
-// used.
-class Strip {
- public:
-  static constexpr size_t kWidth = static_cast<size_t>(kSide) - 1 + PerShift().size();
-
-  // Beyond the sides of the image the pixels are 0. The rows must lie in it.
-  Strip(const cv::Mat& image, int x, int y) {
-    const int left = x - kHalfPatch - kReach;
-    const int first = std::max(0, -left);
-    const int last = std::min(static_cast<int>(kWidth), image.cols - left);
-    for (int row = 0; row < kSide; ++row) {
-      const uint8_t* const pixels = image.ptr<uint8_t>(y - kHalfPatch + row);
-      for (int column = first; column < last; ++column) {
-        pixels_[static_cast<size_t>(row) * kWidth + static_cast<size_t>(column)] =
-            static_cast<float>(pixels[left + column]);
-      }
-    }
-  }
-
-  // The weighted mean absolute difference of the patch from each of those in the strip, less their
-  // means.
-  PerShift Differences(const Patch& patch) const {
-    const PerShift means = Means();
-    PerShift sums{};
-    static const Patch weights = CentreWeights();
-    ForEachPixel([&](size_t i, const float* pixels) {
-      for (size_t shift = 0; shift < sums.size(); ++shift) {
-        sums[shift] += weights[i] * std::abs(patch[i] - (pixels[shift] - means[shift]));
-      }
-    });
-    for (float& sum : sums) {
-      sum /= static_cast<float>(patch.size());
-    }
-    return sums;
-  }
-
- private:
-  // Calls visit(i, pixels) for each pixel i of a patch; pixels[k] is the one of the k-th shift.
-  template <typename Visit>
-  void ForEachPixel(const Visit& visit) const {
-    for (size_t row = 0; row < size_t{kSide}; ++row) {
-      for (size_t column = 0; column < size_t{kSide}; ++column) {
-        visit(row * kSide + column, &pixels_[row * kWidth + column]);
-      }
-    }
-  }
-
-  PerShift Means() const {
-    PerShift sums{};
-    ForEachPixel([&](size_t /*i*/, const float* pixels) {
-      for (size_t shift = 0; shift < sums.size(); ++shift) {
-        sums[shift] += pixels[shift];
-      }
-    });
-    for (float& sum : sums) {
-      sum /= static_cast<float>(kSide * kSide);
-    }
-    return sums;
-  }
-
-  std::array<float, size_t{kSide} * kWidth> pixels_{};
-};
-
-struct Fit {
-  float column = 0.0F;  // px at the level of the patch
-  float difference = 0.0F;
-};
-
-// The column at which the patch fits best, about `column`. Nothing if that is the last one that was
-// tried, because the best one may lie beyond. The row must have room for a patch.
-std::optional<Fit> FitPatch(const Patch& patch, const cv::Mat& image, int column, int row) {
-  PerShift differences = Strip(image, column, row).Differences(patch);
-  for (int shift = 0; shift < kShifts; ++shift) {
-    if (!IsInside(image, column - kReach + shift, row)) {
-      differences[static_cast<size_t>(shift)] = std::numeric_limits<float>::infinity();
-    }
-  }
-  const auto best = std::min_element(differences.begin(), differences.begin() + kShifts);
-  const auto at = static_cast<int>(best - differences.begin());
-  if (at == 0 || at == kShifts - 1 || !std::isfinite(*(best - 1)) || !std::isfinite(*(best + 1))) {
-    return std::nullopt;
-  }
-  const float before = *(best - 1);
-  const float after = *(best + 1);
-  const float curvature = before + after - 2.0F * *best;
-  const float offset = curvature > 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
-  return Fit{static_cast<float>(column + at - kReach) + offset, *best};
-}
-
+constexpr double kOutlier = 2.1;        // times the median: 1.5 sigma, with 1.4 medians per sigma
+constexpr double kLeastMedian = 1.0;    // grey levels; images without noise differ by roundings
 float MedianDifference(std::span<const float> differences) {
   std::vector<float> found;
   std::copy_if(differences.begin(), differences.end(), std::back_inserter(found),
@@ -221,13 +76,9 @@ StereoMatcher::Found StereoMatcher::MatchOne(const StereoImage& left, const Ster
   const Eigen::Vector2f other = right.pyramid.FromLevelZero(best->raw, seen.level);
   const int column = static_cast<int>(std::lround(centre.x()));
   const int line = static_cast<int>(std::lround(centre.y()));
-  const cv::Mat& image = left.pyramid.level(seen.level);
-  if (!IsInside(image, column, line)) {
-    return {};
-  }
-  const std::optional<Fit> fit =
-      FitPatch(CutPatch(image, column, line), right.pyramid.level(seen.level),
-               static_cast<int>(std::lround(other.x())), line);
+  const std::optional<PatchFit> fit =
+      FitPatch(left.pyramid.level(seen.level), {column, line}, right.pyramid.level(seen.level),
+               static_cast<int>(std::lround(other.x())));
   if (!fit) {
     return {};
   }

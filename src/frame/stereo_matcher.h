@@ -21,9 +21,8 @@ struct StereoImage {
 // Finds the columns of keypoints in the right image of a rectified pair, as ORB-SLAM2 does
 // (Mur-Artal and Tardos 2017, section III.A): the right keypoint with the most similar descriptor
 // in the same rows, at the same or a neighbouring level, to the left by at most `largest_disparity`
-// (px); then the column where the patch of the left keypoint fits best, to a fraction of a pixel by
-// a parabola through three sums of absolute differences. Matches whose sum is much larger than the
-// median of the pair are left out.
+// (px); then the column where the patch of the left keypoint fits best, to a fraction of a pixel
+// (patch_fit.h). Matches whose difference is much larger than the median of the pair are left out.
 class StereoMatcher {
  public:
   StereoMatcher(const ScaleLevels& levels, double largest_disparity);

@@ -58,6 +58,21 @@ TEST(CoarseDepth, OnlyTheRegionIsSearched) {
             0);
 }
 
+// The keypoints have disparities of 60 px, the plane one of 70 px.
+TEST(CoarseDepth, FindsWhatIsALittleNearerThanTheKeypoints) {
+  SerialRunner runner;
+  const PinholeCamera camera{.fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5, .bf = 50.0};
+  const cv::Mat left = MakeCornerImage();
+  const int disparity = 70;
+  cv::Mat right(left.size(), CV_8UC1, cv::Scalar(120));
+  left.colRange(disparity, left.cols).copyTo(right.colRange(0, left.cols - disparity));
+  const std::vector<float> disparities(100, 60.0F);
+  const cv::Rect region(200, 100, 300, 250);
+  const cv::Mat depth = CoarseDepth(left, right, camera, {region, disparities}, runner);
+  const double metres = camera.bf / disparity;
+  EXPECT_GT(cv::countNonZero(abs(depth(region) - metres) < 0.02), region.area() * 8 / 10);
+}
+
 TEST(CoarseDepth, ImagesOfDifferentThingsHaveLittleDepth) {
   SerialRunner runner;
   const PinholeCamera camera{.fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5, .bf = 50.0};

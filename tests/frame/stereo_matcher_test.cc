@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 
 #include "features/test_images.h"
@@ -45,6 +47,10 @@ class StereoMatcherTest : public ::testing::Test {
                                              [](float disparity) { return disparity > 0.0F; }));
   }
 
+  static float Mean(const std::vector<float>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0F) / static_cast<float>(values.size());
+  }
+
   FeatureExtractor left_{FeatureOptions()};
   FeatureExtractor right_{FeatureOptions()};
   ExtractedFeatures features_;
@@ -67,6 +73,99 @@ TEST_F(StereoMatcherTest, FindsTheDisparitiesOfAPlaneToAFractionOfAPixel) {
   std::sort(errors.begin(), errors.end());
   EXPECT_LT(errors[errors.size() / 2], 0.15F);
   EXPECT_LT(errors[errors.size() * 95 / 100], 1.0F);
+}
+
+// Shapes of all sizes on a plane parallel to the images, which are the means of 4 x 4 finer pixels,
+// so that disparities are multiples of a quarter of a pixel.
+class FinePlane {
+ public:
+  FinePlane() {
+    cv::RNG random(3);
+    for (int i = 0; i < 2500; ++i) {
+      const cv::Point2f middle(random.uniform(0.0F, 1.0F) * static_cast<float>(fine_.cols),
+                               random.uniform(0.0F, 1.0F) * static_cast<float>(fine_.rows));
+      const auto size = static_cast<float>(kFine * std::exp(random.uniform(1.0, 4.0)));
+      const cv::RotatedRect shape(middle, {size, size * random.uniform(0.3F, 1.0F)},
+                                  random.uniform(0.0F, 360.0F));
+      std::array<cv::Point2f, 4> corners;
+      shape.points(corners.data());
+      std::vector<cv::Point> whole(corners.begin(), corners.end());
+      cv::fillConvexPoly(fine_, whole, cv::Scalar(random.uniform(20, 236)));
+    }
+  }
+  // The image whose columns are moved to the left.
+  cv::Mat Image(int fine_columns, uint64_t seed) const {
+    cv::Mat image;
+    cv::resize(fine_.colRange(fine_columns, fine_columns + kFine * 480), image, {480, 360}, 0.0,
+               0.0, cv::INTER_AREA);
+    cv::Mat noise(image.size(), CV_16SC1);
+    cv::RNG(seed).fill(noise, cv::RNG::NORMAL, 0.0, 1.5);
+    cv::add(image, noise, image, cv::noArray(), CV_8UC1);
+    return image;
+  }
+  static constexpr int kFine = 4;
+
+ private:
+  cv::Mat fine_{kFine * 360, kFine * 560, CV_8UC1, cv::Scalar(128)};
+};
+
+TEST_F(StereoMatcherTest, ThePlanesOfAllLevelsHaveTheRightDisparity) {
+  constexpr float kMost = 0.03F;  // px of the level in one plane, and of level 0 in all of them
+  const FinePlane plane;
+  const cv::Mat left = plane.Image(0, 1);
+  std::array<std::vector<float>, 8> of_all;
+  for (const int fine : {80, 93, 110, 123, 136, 149, 166, 179, 202, 217, 240, 263}) {
+    const float disparity = static_cast<float>(fine) / FinePlane::kFine;
+    const std::vector<float> found = Match(left, plane.Image(fine, 2));
+    std::array<std::vector<float>, 8> errors;
+    for (size_t i = 0; i < found.size(); ++i) {
+      const auto level = static_cast<size_t>(features_.keypoints[i].level);
+      const float error = found[i] - disparity;
+      if (found[i] > 0.0F && std::abs(error) < left_.levels().scale[level]) {
+        errors[level].push_back(error);
+        of_all[level].push_back(error);
+      }
+    }
+    for (size_t level = 0; level < errors.size(); ++level) {
+      ASSERT_GT(errors[level].size(), 10U);
+      EXPECT_LT(std::abs(Mean(errors[level])), 2.0F * kMost * left_.levels().scale[level])
+          << "level " << level << " at " << disparity;
+    }
+  }
+  for (size_t level = 0; level < of_all.size(); ++level) {
+    EXPECT_LT(std::abs(Mean(of_all[level])), kMost) << "level " << level;
+  }
+}
+
+// At level 7 two rows are seven of the image.
+TEST_F(StereoMatcherTest, UpperLevelsMayBeMoreRowsApart) {
+  const cv::Mat left = MakeCornerImage();
+  const auto count = [&](float down) {
+    const std::vector<float> disparities = Match(left, RightOf(left, down));
+    size_t found = 0;
+    for (size_t i = 0; i < disparities.size(); ++i) {
+      found += features_.keypoints[i].level >= 6 && disparities[i] > 0.0F ? 1 : 0;
+    }
+    return found;
+  };
+  EXPECT_GT(count(4.0F), count(0.0F) / 2);
+}
+
+// The same things are seen twice in the right image. The ones that fit better would be nearer than
+// the largest disparity allows.
+TEST_F(StereoMatcherTest, WhatIsNearerThanTheBaselineHidesNothing) {
+  const cv::Mat things = MakeCornerImage();
+  const cv::Rect square(300, 100, 150, 250);
+  cv::Mat left(things.size(), CV_8UC1, cv::Scalar(120));
+  things(square).copyTo(left(square));
+  cv::Mat right(things.size(), CV_8UC1, cv::Scalar(120));
+  things(square).copyTo(right(square - cv::Point(220, 0)));
+  cv::Mat noise(square.size(), CV_16SC1);
+  cv::RNG(5).fill(noise, cv::RNG::NORMAL, 0.0, 3.0);
+  cv::Mat noisy;
+  cv::add(things(square), noise, noisy, cv::noArray(), CV_8UC1);
+  noisy.copyTo(right(square - cv::Point(20, 0)));
+  EXPECT_GT(Found(Match(left, right)), 80U);
 }
 
 // Squares of 60 px at a disparity of 30 px before a background at 22 px.
