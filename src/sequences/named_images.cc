@@ -21,27 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The last number in a name: "12.5" of "left_12.5" and "0007" of "frame-0007.color".
-std::string_view LastNumber(std::string_view name) {
-  const auto is_digit = [&](size_t i) {
-    return std::isdigit(static_cast<unsigned char>(name[i])) != 0;
-  };
-  size_t end = name.size();
-  while (end > 0 && !is_digit(end - 1)) {
-    --end;
-  }
-  size_t begin = end;
-  while (begin > 0 && is_digit(begin - 1)) {
-    --begin;
-  }
-  if (begin >= 2 && name[begin - 1] == '.' && is_digit(begin - 2)) {
-    for (--begin; begin > 0 && is_digit(begin - 1);) {
-      --begin;
-    }
-  }
-  return name.substr(begin, end - begin);
-}
-
 // How many units of a stamp of a clock are a second; 0 for the number of a frame.
 double UnitsOfClock(std::string_view number) {
   if (number.find('.') != std::string_view::npos) {
@@ -101,6 +80,26 @@ void CheckSteps(const fs::path& folder, const NamedImages& images, double frames
 }
 
 }  // namespace
+
+std::string_view LastNumber(std::string_view name) {
+  const auto is_digit = [&](size_t i) {
+    return std::isdigit(static_cast<unsigned char>(name[i])) != 0;
+  };
+  size_t end = name.size();
+  while (end > 0 && !is_digit(end - 1)) {
+    --end;
+  }
+  size_t begin = end;
+  while (begin > 0 && is_digit(begin - 1)) {
+    --begin;
+  }
+  if (begin >= 2 && name[begin - 1] == '.' && is_digit(begin - 2)) {
+    for (--begin; begin > 0 && is_digit(begin - 1);) {
+      --begin;
+    }
+  }
+  return name.substr(begin, end - begin);
+}
 
 std::vector<fs::path> ListImages(const fs::path& folder, std::string_view part) {
   constexpr std::array<std::string_view, 3> kRead = {".png", ".jpg", ".jpeg"};

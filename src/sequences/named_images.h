@@ -22,6 +22,10 @@ struct NamedImages {
 std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder,
                                               std::string_view part = {});
 
+// The last number in a name without its extension: "12.5" of "left_12.5" and "0007" of
+// "frame-0007.color".
+std::string_view LastNumber(std::string_view name);
+
 // Finds the time stamps of images by the last number in each name without its extension. A number
 // with a decimal point is in seconds. A whole number of 13, 16 or 19 digits is in milliseconds,
 // microseconds or nanoseconds, as of clocks that begin in 1970. Any other whole number is the

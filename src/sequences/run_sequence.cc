@@ -53,11 +53,19 @@ std::shared_ptr<const StereoRectifier> RectifierOf(const std::string& calibratio
                              : MakeRectifier(calibration, ReadSettings(calibration).camera);
 }
 
-ImageSequence OpenEurocStereo(const Reopening& opening) {
-  return OpenEurocPairs(opening.path, {}, RectifierOf(opening.Choice("calibration"))).images;
+// The settings of a run take the place of the calibration of the data set.
+std::shared_ptr<const StereoRectifier> PairRectifierOf(const std::string& calibration) {
+  return calibration.empty() ? nullptr
+                             : MakePairRectifier(calibration, ReadSettings(calibration).camera);
 }
 
-ImageSequence OpenKitti(const Reopening& opening) { return OpenKittiPairs(opening.path).images; }
+ImageSequence OpenEurocStereo(const Reopening& opening) {
+  return OpenEurocPairs(opening.path, {}, PairRectifierOf(opening.Choice("calibration"))).images;
+}
+
+ImageSequence OpenKitti(const Reopening& opening) {
+  return OpenKittiPairs(opening.path, {}, PairRectifierOf(opening.Choice("calibration"))).images;
+}
 
 ImageSequence OpenKittiLeft(const Reopening& opening) {
   return OpenKittiImages(opening.path).images;

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -161,43 +163,99 @@ void FinishKitti(const fs::path& folder, const FrameSelection& selection, ImageS
 
 // ---- folders
 
-std::vector<FramePaths> PairByName(const fs::path& left_folder, const fs::path& right_folder,
-                                   double frames_per_second) {
-  const NamedImages left = FindNamedImages(left_folder, frames_per_second);
-  const std::vector<fs::path> right = ListImages(right_folder);
-  std::map<std::string, fs::path> by_name;
-  for (const fs::path& image : right) {
-    by_name[image.stem().string()] = image;
+// What a name shares with that of its partner: the whole name, or only its last number where the
+// names also tell the side ("left_000010" and "right_000010").
+enum class SharedPart { kName, kNumber };
+
+std::string PartOf(const fs::path& image, SharedPart shared) {
+  const std::string stem = image.stem().string();
+  if (shared == SharedPart::kName) {
+    return stem;
   }
-  std::vector<FramePaths> frames = left.frames;
-  const bool have_names = by_name.contains(frames.front().image.stem().string());
-  if (!have_names && right.size() != frames.size()) {
-    throw InputError(fmt::format(
-        "{} has {} images and {} has {} with other names, expected pairs with the same names",
-        left_folder.string(), frames.size(), right_folder.string(), right.size()));
+  const std::string_view number = LastNumber(stem);
+  const size_t zeros = std::min(number.find_first_not_of('0'), number.size());
+  return std::string(number.substr(zeros));
+}
+
+// The right images by what they share with left ones; nothing if two of them share the same.
+std::optional<std::map<std::string, fs::path>> ByPart(const std::vector<fs::path>& images,
+                                                      SharedPart shared) {
+  std::map<std::string, fs::path> by_part;
+  for (const fs::path& image : images) {
+    by_part[PartOf(image, shared)] = image;
   }
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const auto partner = by_name.find(frames[i].image.stem().string());
-    if (have_names && partner == by_name.end()) {
-      throw InputError(
-          fmt::format("{}: has no partner in {}", frames[i].image.string(), right_folder.string()));
+  return by_part.size() == images.size() ? std::optional(std::move(by_part)) : std::nullopt;
+}
+
+// The left images that have a partner.
+std::vector<FramePaths> PairBy(SharedPart shared, const std::vector<FramePaths>& left,
+                               const std::vector<fs::path>& right) {
+  const auto by_part = ByPart(right, shared);
+  std::vector<FramePaths> pairs;
+  for (const FramePaths& frame : left) {
+    if (!by_part) {
+      break;
     }
-    frames[i].right = have_names ? partner->second : right[i];
+    if (const auto partner = by_part->find(PartOf(frame.image, shared));
+        partner != by_part->end()) {
+      pairs.push_back(frame);
+      pairs.back().right = partner->second;
+      pairs.back().number = pairs.size() - 1;
+    }
   }
-  return frames;
+  return pairs;
+}
+
+// Pairs the images of two folders by what their names share, and leaves out those without a
+// partner. Only where names share nothing, equally many images are pairs in the order of their
+// names.
+void PairFolders(const fs::path& left_folder, const fs::path& right_folder,
+                 double frames_per_second, ImageSequence& sequence) {
+  const std::vector<FramePaths> left = FindNamedImages(left_folder, frames_per_second).frames;
+  const std::vector<fs::path> right = ListImages(right_folder);
+  std::vector<FramePaths>& pairs = sequence.frames;
+  pairs = PairBy(SharedPart::kName, left, right);
+  if (pairs.empty()) {
+    pairs = PairBy(SharedPart::kNumber, left, right);
+  }
+  if (pairs.empty() && left.size() == right.size()) {
+    pairs = left;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      pairs[i].right = right[i];
+    }
+  }
+  if (2 * pairs.size() < left.size()) {
+    throw InputError(fmt::format(
+        "{} has {} images, and {} of them have a partner among the {} of {}, expected pairs with "
+        "the same names or numbers",
+        left_folder.string(), left.size(), pairs.size(), right.size(), right_folder.string()));
+  }
+  sequence.unpaired = left.size() - pairs.size();
+  if (pairs.size() < left.size() || pairs.size() < right.size()) {
+    sequence.warnings.push_back(
+        fmt::format("{} of {} images of {} and {} of {} of {} have no partner and are left out",
+                    sequence.unpaired, left.size(), left_folder.string(),
+                    right.size() - pairs.size(), right.size(), right_folder.string()));
+  }
 }
 
 }  // namespace
 
-StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& selection) {
+StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& selection,
+                              const std::shared_ptr<const StereoRectifier>& rectifier) {
   const auto [left, right] = FindKittiFolders(folder);
   StereoSequence sequence;
   sequence.images.dataset = "kitti";
-  sequence.calibration.camera = CameraOfPair(folder / "calib.txt", "P" + left, "P" + right);
+  if (rectifier == nullptr) {
+    sequence.calibration.camera = CameraOfPair(folder / "calib.txt", "P" + left, "P" + right);
+  }
   sequence.images.frames = ListKittiImages(folder, folder / ("image_" + left),
                                            folder / ("image_" + right), sequence.images.warnings);
   FinishKitti(folder, selection, sequence.images, sequence.calibration);
-  LoadPairs(nullptr, sequence.images);
+  if (rectifier != nullptr) {
+    sequence.calibration.camera = rectifier->camera();
+  }
+  LoadPairs(rectifier, sequence.images);
   return sequence;
 }
 
@@ -235,7 +293,7 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
   }
   ImageSequence sequence;
   sequence.dataset = "stereo_folder";
-  sequence.frames = PairByName(left, path / "right", options.frames_per_second);
+  PairFolders(left, path / "right", options.frames_per_second, sequence);
   if (fs::is_regular_file(path / "groundtruth.txt", error)) {
     sequence.groundtruth = path / "groundtruth.txt";
   }

@@ -139,4 +139,10 @@ std::shared_ptr<const StereoRectifier> MakeRectifier(const fs::path& file,
   return pair ? std::make_shared<const StereoRectifier>(*pair, file.string()) : nullptr;
 }
 
+std::shared_ptr<const StereoRectifier> MakePairRectifier(const fs::path& file,
+                                                         const PinholeCamera& camera) {
+  return std::make_shared<const StereoRectifier>(
+      ReadStereoPair(file, camera).value_or(TwinsOf(camera)), file.string());
+}
+
 }  // namespace hullslam

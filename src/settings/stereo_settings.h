@@ -33,4 +33,8 @@ bool HasRightCamera(const std::filesystem::path& file);
 std::shared_ptr<const StereoRectifier> MakeRectifier(const std::filesystem::path& file,
                                                      const PinholeCamera& camera);
 
+// The same, but for one camera without distortion a rectifier that leaves the images as they are.
+std::shared_ptr<const StereoRectifier> MakePairRectifier(const std::filesystem::path& file,
+                                                         const PinholeCamera& camera);
+
 }  // namespace hullslam

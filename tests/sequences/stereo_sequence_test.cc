@@ -134,7 +134,12 @@ TEST_F(StereoSequenceTest, FoldersOfPairsAreReadByTheirNames) {
   EXPECT_EQ(sequence.frames[2].right.filename(), "10.png");
   EXPECT_DOUBLE_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 0.1);
   fs::remove(folder_.path() / "right/2.png");
-  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"left/2.png: has no partner"});
+  const ImageSequence fewer = OpenStereoFolder(folder_.path());
+  ASSERT_EQ(fewer.frames.size(), 2u);
+  EXPECT_EQ(fewer.frames[1].right.filename(), "10.png");
+  EXPECT_EQ(fewer.unpaired, 1u);
+  ASSERT_EQ(fewer.warnings.size(), 1u);
+  EXPECT_NE(fewer.warnings[0].find("1 of 3 images"), std::string::npos) << fewer.warnings[0];
   fs::remove_all(folder_.path() / "right");
   ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"a folder left but none right"});
 }
@@ -142,10 +147,56 @@ TEST_F(StereoSequenceTest, FoldersOfPairsAreReadByTheirNames) {
 TEST_F(StereoSequenceTest, FoldersWithOtherNamesMustHaveAsManyImages) {
   WriteImage("left/l1.png");
   WriteImage("left/l2.png");
-  WriteImage("right/r1.png");
-  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"2 images", "1 with other names"});
-  WriteImage("right/r2.png");
-  EXPECT_EQ(OpenStereoFolder(folder_.path()).frames[1].right.filename(), "r2.png");
+  WriteImage("right/r11.png");
+  ExpectInputError([&] { OpenStereoFolder(folder_.path()); },
+                   {"left has 2 images", "0 of them", "1 of"});
+  WriteImage("right/r12.png");
+  EXPECT_EQ(OpenStereoFolder(folder_.path()).frames[1].right.filename(), "r12.png");
+}
+
+// The first right and the last left image are missing, so both folders have as many images.
+TEST_F(StereoSequenceTest, PairsShareTheirNamesWhicheverImagesAreMissing) {
+  for (int i = 0; i < 6; ++i) {
+    if (i < 5) {
+      WriteImage("left/" + std::to_string(100 + i) + ".png");
+    }
+    if (i > 0) {
+      WriteImage("right/" + std::to_string(100 + i) + ".png");
+    }
+  }
+  const ImageSequence sequence = OpenStereoFolder(folder_.path());
+  ASSERT_EQ(sequence.frames.size(), 4u);
+  for (const FramePaths& frame : sequence.frames) {
+    EXPECT_EQ(frame.image.filename(), frame.right.filename());
+  }
+  EXPECT_EQ(sequence.unpaired, 1u);
+}
+
+TEST_F(StereoSequenceTest, NamesThatTellTheSideShareTheirNumbers) {
+  for (int i = 0; i < 6; ++i) {
+    if (i != 2) {
+      WriteImage("left/left_00" + std::to_string(i) + ".png");
+    }
+    if (i != 4) {
+      WriteImage("right/right_" + std::to_string(i) + ".png");
+    }
+  }
+  const ImageSequence sequence = OpenStereoFolder(folder_.path());
+  ASSERT_EQ(sequence.frames.size(), 4u);
+  for (const FramePaths& frame : sequence.frames) {
+    const std::string left = frame.image.stem().string();
+    EXPECT_EQ(left.back(), frame.right.stem().string().back()) << left;
+  }
+  EXPECT_EQ(sequence.frames[3].number, 3u);
+}
+
+TEST_F(StereoSequenceTest, FoldersWithFewPairsAreRefused) {
+  for (int i = 0; i < 6; ++i) {
+    WriteImage("left/" + std::to_string(i) + ".png");
+  }
+  WriteImage("right/2.png");
+  WriteImage("right/3.png");
+  ExpectInputError([&] { OpenStereoFolder(folder_.path()); }, {"6 images", "2 of them"});
 }
 
 TEST_F(StereoSequenceTest, ImagesSideBySideAreSplit) {

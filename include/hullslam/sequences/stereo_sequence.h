@@ -20,9 +20,10 @@ struct StereoSequence {
 // `image_0` and `image_1` (or in `image_2` and `image_3`, in colour), `calib.txt` with the 3x4
 // projections P0 to P3, and `times.txt` with seconds. The ground truth is `groundtruth.txt` or
 // `poses.txt` in the folder, or `poses/NAME.txt` of the data set. Throws InputError with file and
-// line.
+// line. With a `rectifier`, it takes the place of calib.txt.
 StereoSequence OpenKittiPairs(const std::filesystem::path& folder,
-                              const FrameSelection& selection = {});
+                              const FrameSelection& selection = {},
+                              const std::shared_ptr<const StereoRectifier>& rectifier = nullptr);
 
 // The images of one camera of a stereo sequence.
 struct LeftSequence {
@@ -43,10 +44,11 @@ struct StereoFolderOptions {
 };
 
 // Opens pairs of two forms: a folder with the subfolders `left` (or `rgb`) and `right`, whose
-// images have the same names, or are equally many; or a video or a folder of images that show both
-// halves of a pair side by side, the left one first. Stamps are those of the names if they are
-// seconds or nanoseconds, else index / frames_per_second; those of a video are its own. Throws
-// InputError for anything else, and for an image without partner.
+// images have the same names, or the same last numbers in them, or are equally many; or a video or
+// a folder of images that show both halves of a pair side by side, the left one first. Stamps are
+// those of the names if they are seconds or nanoseconds, else index / frames_per_second; those of a
+// video are its own. Throws InputError for anything else, and if fewer than half of the left images
+// have a partner; a warning counts images without one.
 ImageSequence OpenStereoFolder(const std::filesystem::path& path,
                                const StereoFolderOptions& options = {});
 
