@@ -30,8 +30,10 @@ AlignmentKind AlignmentOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
 
-// Depth in a wrong unit gives a map of the wrong size, which nothing but the ground truth reveals.
-void WarnOfScale(const Trajectory& groundtruth, const Trajectory& trajectory, double rmse) {
+// Depth in a wrong unit, or a wrong baseline, gives a map of the wrong size, which nothing but the
+// ground truth reveals.
+void WarnOfScale(const Trajectory& groundtruth, const Trajectory& trajectory, double rmse,
+                 SensorKind sensor) {
   constexpr double kMostDifference = 0.1;  // the depth of real cameras is wrong by up to 4 %
   constexpr double kMuchBetter = 0.5;
   AteOptions options;
@@ -41,9 +43,9 @@ void WarnOfScale(const Trajectory& groundtruth, const Trajectory& trajectory, do
   if (scaled.ok() && std::abs(scale - 1.0) > kMostDifference &&
       scaled.errors.rmse < kMuchBetter * rmse) {
     PrintError(
-        "warning: the trajectory is {:.2g} times as large as the ground truth; is DepthMapFactor "
-        "right?\n",
-        1.0 / scale);
+        "warning: the trajectory is {:.2g} times as large as the ground truth; is {} right?\n",
+        1.0 / scale,
+        sensor == SensorKind::kStereo ? "the baseline of the cameras" : "DepthMapFactor");
   }
 }
 
@@ -63,7 +65,7 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
   summary.scale = ate.reference_from_estimate.scale;
   summary.pairs = ate.pairs;
   if (options.alignment == AlignmentKind::kSe3) {
-    WarnOfScale(groundtruth, trajectory, ate.errors.rmse);
+    WarnOfScale(groundtruth, trajectory, ate.errors.rmse, sensor);
   }
   const Trajectory scaled = Scaled(trajectory, ate.reference_from_estimate.scale);
   const RpeResult rpe = EvaluateRpe(groundtruth, scaled);

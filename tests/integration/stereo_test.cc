@@ -149,6 +149,17 @@ TEST_F(Stereo, ImagesThatAreRectifiedAreNotResized) {
                 {bent, "Camera.imageScale"});
 }
 
+TEST_F(Stereo, AWrongBaselineIsWarnedOf) {
+  room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  ExpectParts(Run({path_, "--settings", WriteSettings(kBaseline / 600.0)}).errors,
+              {"warning: the baseline is 0.0002 m, expected 0.01 to 3 m"});
+  const ProgramResult wide =
+      Run({path_, "--settings", WriteSettings(2.0 * kBaseline), "--overwrite"});
+  EXPECT_EQ(wide.errors.find("warning: the baseline is"), std::string::npos) << wide.errors;
+  ExpectParts(wide.errors, {"times as large as the ground truth; is the baseline"});
+  EXPECT_EQ(wide.errors.find("DepthMapFactor"), std::string::npos);
+}
+
 class StereoBag : public Stereo {
  protected:
   StereoBag() : Stereo("stereo_bag") {}
@@ -214,6 +225,29 @@ class StereoKitti : public Stereo {
  protected:
   StereoKitti() : Stereo("stereo_kitti") {}
 };
+
+// The images and the settings are half as large as calib.txt says.
+TEST_F(StereoKitti, TheCameraOfTheSettingsTakesThePlaceOfTheCalibration) {
+  room_.WritePairs(path_, "image_0", "image_1", kFrames, kBaseline);
+  std::string times;
+  for (int i = 0; i < kFrames; ++i) {
+    times += fmt::format("{}\n", 0.1 * i);
+  }
+  folder_.Write(fs::path(path_).filename().string() + "/times.txt", times);
+  const PinholeCamera& camera = room_.camera();
+  const double fx = 2.0 * camera.fx;
+  folder_.Write(fs::path(path_).filename().string() + "/calib.txt",
+                fmt::format("P0: {0} 0 {1} 0 0 {0} {2} 0 0 0 1 0\n"
+                            "P1: {0} 0 {1} {3} 0 {0} {2} 0 0 0 1 0\n",
+                            fx, 2.0 * camera.cx, 2.0 * camera.cy, -kBaseline * fx));
+  const std::string settings = WriteSettings(kBaseline);
+  ExpectMapOf({path_, "--settings", settings});
+  EXPECT_LT(Ate(), kSmall);
+  EXPECT_NEAR(Scale(), 1.0, 0.01);
+  const std::string bent = folder_.Write("bent.yaml", ReadFile(settings) + "Camera.k1: 0.01\n");
+  ExpectRefusal({path_, "--settings", bent, "--set", "Camera.imageScale=0.5"},
+                {bent, "Camera.imageScale"});
+}
 
 TEST_F(StereoKitti, ARealPairIsTracked) {
   const auto data = FindTestData("kitti_pairs_seq1");

@@ -47,28 +47,52 @@ std::string DescribeCamera(const PinholeCamera& camera) {
                      camera.bf / camera.fx, camera.fx);
 }
 
-// The rectifier of a settings file (MakeRectifier). Throws InputError if the file does not tell how
-// far the cameras are apart, or if images are to be resized that must be rectified.
-std::shared_ptr<const StereoRectifier> RectifierOf(const std::filesystem::path& file,
-                                                   const LoadedSettings& settings) {
+// Throws InputError if the settings do not tell how far the cameras are apart.
+void CheckBaseline(const std::filesystem::path& file, const LoadedSettings& settings) {
   if (!settings.has_baseline && !HasRightCamera(file)) {
     throw InputError(file.string() +
                      ": has no baseline, expected Camera.bf (the baseline times Camera.fx) or the "
                      "calibration of both cameras");
   }
-  auto rectifier = MakeRectifier(file, settings.options.camera);
-  if (rectifier != nullptr && settings.read_width > 0) {
+}
+
+// Throws InputError if images are to be resized that must be rectified.
+void CheckNotResized(const std::filesystem::path& file, const LoadedSettings& settings) {
+  if (settings.read_width > 0 && MakeRectifier(file, settings.options.camera) != nullptr) {
     throw InputError(file.string() +
                      ": asks for resized images, which is not possible where both images are "
                      "rectified, expected neither Camera.newWidth, Camera.newHeight nor "
                      "Camera.imageScale");
   }
+}
+
+// The rectifier of a settings file (MakeRectifier), which is checked.
+std::shared_ptr<const StereoRectifier> RectifierOf(const std::filesystem::path& file,
+                                                   const LoadedSettings& settings) {
+  CheckBaseline(file, settings);
+  auto rectifier = MakeRectifier(file, settings.options.camera);
+  CheckNotResized(file, settings);
   return rectifier;
+}
+
+// Warns of a baseline that no camera has, as that of a file in other units.
+void WarnOfBaseline(const PinholeCamera& camera) {
+  constexpr double kShortest = 0.01;  // m, of endoscopes
+  constexpr double kLongest = 3.0;    // m, of cars
+  const double baseline = camera.bf / camera.fx;
+  if (baseline < kShortest || baseline > kLongest) {
+    PrintError(
+        "warning: the baseline is {:.3g} m, expected {} to {} m; Camera.bf is the baseline in "
+        "metres "
+        "times Camera.fx, and the translation between two cameras is in metres\n",
+        baseline, kShortest, kLongest);
+  }
 }
 
 DatasetInput Finish(const RunArguments& arguments, LoadedSettings settings, ImageSequence sequence,
                     std::vector<std::string> notes) {
   CheckPairs(arguments.sequence, sequence, settings.options.camera);
+  WarnOfBaseline(settings.options.camera);
   notes.push_back(DescribeCamera(settings.options.camera));
   if (!sequence.stamps_note.empty()) {
     notes.push_back(sequence.stamps_note);
@@ -80,7 +104,7 @@ DatasetInput Finish(const RunArguments& arguments, LoadedSettings settings, Imag
 // A data set whose files have the calibration of the pair.
 class CalibratedPairs final : public Dataset {
  public:
-  // The rectifier is that of --settings; null if they do not describe both cameras.
+  // The rectifier is that of --settings, which take the place of the calibration; null without.
   using Opener = std::function<StereoSequence(const std::filesystem::path&, const FrameSelection&,
                                               std::shared_ptr<const StereoRectifier> rectifier)>;
   CalibratedPairs(DatasetHelp help, std::string source, Opener open)
@@ -93,7 +117,9 @@ class CalibratedPairs final : public Dataset {
     std::shared_ptr<const StereoRectifier> rectifier;
     if (!arguments.settings.empty()) {
       given = LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
-      rectifier = MakeRectifier(arguments.settings, given->options.camera);
+      CheckBaseline(arguments.settings, *given);
+      rectifier = MakePairRectifier(arguments.settings, given->options.camera);
+      CheckNotResized(arguments.settings, *given);
     }
     StereoSequence sequence = open_(arguments.sequence, arguments.selection, rectifier);
     const SystemOptions own = MakeSettings(sequence.calibration, arguments.sequence.string());
@@ -238,11 +264,7 @@ std::unique_ptr<Dataset> MakeKittiDataset() {
                   .settings = "default: the cameras of calib.txt in SEQUENCE",
                   .groundtruth = "default: groundtruth.txt or poses.txt in SEQUENCE, or "
                                  "poses/NAME.txt of the data set"},
-      "calib.txt",
-      [](const std::filesystem::path& folder, const FrameSelection& selection,
-         const std::shared_ptr<const StereoRectifier>& /*rectifier*/) {
-        return OpenKittiPairs(folder, selection);
-      });
+      "calib.txt", OpenKittiPairs);
 }
 
 std::unique_ptr<Dataset> MakeStereoFolderDataset() { return std::make_unique<StereoFolder>(); }
