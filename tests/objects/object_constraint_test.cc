@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "costs/object_cost_laws.h"
@@ -87,6 +88,21 @@ TEST_F(ObjectConstraintTest, TheMisfitAddsToTheSigma) {
   options_.misfit_factor = 0.5;
   misfit_px_ = 3.0;
   EXPECT_NEAR(WorstSquare(), 256.0 / (2.0 * 2.0 + 1.5 * 1.5), 1e-9);
+}
+
+TEST_F(ObjectConstraintTest, LinesOfTheRightImageAreMoreRows) {
+  const auto make = [&](std::span<const SilhouetteLine> right_lines) {
+    const ObjectConstraint constraint =
+        MakeObjectConstraint(kObjectCamera, {KeyframeId(), Rigid3(), &detection_}, detection_.lines,
+                             SphereAhead().ellipsoid, misfit_px_, options_, right_lines);
+    return ObjectResidualsOf(*constraint.silhouette, SphereAhead());
+  };
+  const Eigen::VectorXd one = make({});
+  const Eigen::VectorXd both = make(detection_.lines);
+  ASSERT_EQ(one.size(), 3);
+  ASSERT_EQ(both.size(), 6);
+  EXPECT_TRUE(both.head<3>().isApprox(one, 1e-12));
+  EXPECT_GT((both.tail<3>() - one).cwiseAbs().minCoeff(), 0.1) << "the right camera is elsewhere";
 }
 
 TEST_F(ObjectConstraintTest, LinesCountAsALimitedNumber) {
