@@ -104,6 +104,39 @@ TEST_F(PoseObjectsTest, CompensationReducesTheMisfitOfTheLinesAndTheirSigma) {
   }
 }
 
+// The right camera is at +x of the left one, so a point is farther left in its frame.
+TEST_F(PoseObjectsTest, LinesOfTheRightImageAreCompensatedFromWhereTheirCameraIs) {
+  constexpr double kBaseline = 0.3;  // m
+  sensor_.camera.bf = kBaseline * sensor_.camera.fx;
+  const Rigid3 world_from_left = Inverse(camera_);
+  const Rigid3 left_from_right{Eigen::Quaterniond::Identity(), {kBaseline, 0.0, 0.0}};
+  const Rigid3 right = Inverse(world_from_left * left_from_right);
+  for (size_t k = 0; k < table_.size(); ++k) {
+    frame_.detections[k].right_lines = Detect(table_[k], sensor_, right).lines;
+  }
+  const PoseObjects found = Find(true);
+  ASSERT_EQ(found.objects.size(), 3u);
+  size_t compensated = 0;
+  for (size_t i = 0; i < found.objects.size(); ++i) {
+    const ObjectLandmark& object = map_.objects().At(found.ids[i]);
+    std::vector<uint8_t> known;
+    const std::vector<SilhouetteLine> expected =
+        CompensateLines(sensor_.camera, right, object, found.objects[i].detection->right_lines,
+                        KeyframeId(), known, ObjectOptions().misfit);
+    size_t k = 0;
+    for (const SilhouetteLine& line : found.objects[i].right_lines) {
+      while (k < expected.size() && (known[k] == 0 || expected[k].is_one_sided)) {
+        ++k;
+      }
+      ASSERT_LT(k, expected.size());
+      EXPECT_NEAR(line.line.offset, expected[k].line.offset, 1e-9);
+      ++compensated;
+      ++k;
+    }
+  }
+  EXPECT_GT(compensated, 16u);
+}
+
 TEST_F(PoseObjectsTest, IsNotDoneForResidualsWithoutLines) {
   const PoseObjects found = Find(true, ObjectResidual::kOverlap);
   ExpectPlain(found);
