@@ -24,6 +24,13 @@ namespace {
 
 constexpr size_t kMailboxCapacity = 8;  // larger than the number of requests that may wait
 
+// Whether the mapper shortens its work because this message waits. Tracking may need a keyframe or
+// a correction at once. Late detections can wait, and there may be some for every frame: if the
+// mapper hurried for them, it would hardly ever adjust the map.
+bool IsUrgent(const MapMessage& message) {
+  return !std::holds_alternative<LateDetections>(message);
+}
+
 // In a monocular run the mapper is always busy, and tracking would have to share its core with the
 // mapper all the time. With this niceness the mapper still gets a fifth of a core that another
 // thread needs too.
@@ -153,16 +160,15 @@ class ThreadedPipeline final : public Pipeline {
 
   MapperStatus Status() {
     const std::lock_guard lock(mutex_);
-    return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = waiting_};
+    return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = urgent_waiting_};
   }
 
   void Post(MapMessage message) {
     {
       const std::lock_guard lock(mutex_);
       ++waiting_;
-      if (is_busy_) {
-        hurry_.Request();
-      }
+      urgent_waiting_ += IsUrgent(message) ? 1 : 0;
+      UpdateHurry();
     }
     messages_.Send(std::move(message));
   }
@@ -191,7 +197,7 @@ class ThreadedPipeline final : public Pipeline {
       RunInBackground(kMonocularMapperNiceness);
     }
     while (const std::optional<MapMessage> message = messages_.Receive()) {
-      SetBusy(true);
+      BeginWork(*message);
       const bool is_done = EditMap([&] {
         const bool is_applied = mapper_.Process(*message, &hurry_);
         StartNextStage(*message, is_applied, options_, mapper_, map_.Get(), loops_);
@@ -200,7 +206,7 @@ class ThreadedPipeline final : public Pipeline {
         messages_.Close();
         return;
       }
-      SetBusy(false);
+      EndWork();
     }
   }
 
@@ -225,16 +231,29 @@ class ThreadedPipeline final : public Pipeline {
     return failure == nullptr;
   }
 
-  void SetBusy(bool is_busy) {
+  void BeginWork(const MapMessage& message) {
     const std::lock_guard lock(mutex_);
-    is_busy_ = is_busy;
-    if (is_busy) {
-      --waiting_;
-    }
-    if (waiting_ == 0) {
+    is_busy_ = true;
+    --waiting_;
+    urgent_waiting_ -= IsUrgent(message) ? 1 : 0;
+    UpdateHurry();
+    changed_.notify_all();
+  }
+
+  void EndWork() {
+    const std::lock_guard lock(mutex_);
+    is_busy_ = false;
+    UpdateHurry();
+    changed_.notify_all();
+  }
+
+  // The mapper hurries with its message as long as an urgent one waits.
+  void UpdateHurry() {
+    if (is_busy_ && urgent_waiting_ > 0) {
+      hurry_.Request();
+    } else {
       hurry_.Reset();
     }
-    changed_.notify_all();
   }
 
   void Stop() {
@@ -265,6 +284,7 @@ class ThreadedPipeline final : public Pipeline {
   std::condition_variable changed_;
   bool is_busy_ = false;
   int waiting_ = 0;
+  int urgent_waiting_ = 0;  // the waiting messages that are urgent
   int published_ = 0;
   std::exception_ptr failure_;  // the first exception of the mapper, which then stops
   StageTimes mapper_times_;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 #include <string>
 #include <thread>
@@ -29,18 +31,64 @@ class MemoryShortage {
   MemoryShortage(const MemoryShortage&) = delete;
   MemoryShortage& operator=(const MemoryShortage&) = delete;
 
-  static void* Allocate(size_t size) {
-    void* const memory = is_short && !is_spared_thread ? nullptr : std::malloc(size);
-    if (memory == nullptr) {
-      throw std::bad_alloc();
-    }
-    return memory;
-  }
+  static bool Applies() { return is_short && !is_spared_thread; }
 
  private:
   static inline std::atomic<bool> is_short{false};
   static inline thread_local bool is_spared_thread = false;
 };
+
+// While it exists, all threads but the one that made it wait when they want memory. So a test can
+// stop the mapper in the middle of its work, and decide what happens meanwhile.
+class ClosedGate {
+ public:
+  ClosedGate() {
+    is_spared_thread = true;
+    const std::lock_guard lock(mutex);
+    is_closed = true;
+  }
+  ~ClosedGate() {
+    {
+      const std::lock_guard lock(mutex);
+      is_closed = false;
+    }
+    changed.notify_all();
+  }
+  ClosedGate(const ClosedGate&) = delete;
+  ClosedGate& operator=(const ClosedGate&) = delete;
+
+  static void AwaitThread() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [] { return waiting > 0; });
+  }
+
+  static void Pass() {
+    if (!is_closed || is_spared_thread) {
+      return;
+    }
+    std::unique_lock lock(mutex);
+    ++waiting;
+    changed.notify_all();
+    changed.wait(lock, [] { return !is_closed; });
+    --waiting;
+  }
+
+ private:
+  static inline std::mutex mutex;
+  static inline std::condition_variable changed;
+  static inline std::atomic<bool> is_closed{false};
+  static inline int waiting = 0;
+  static inline thread_local bool is_spared_thread = false;
+};
+
+void* Allocate(size_t size) {
+  ClosedGate::Pass();
+  void* const memory = MemoryShortage::Applies() ? nullptr : std::malloc(size);
+  if (memory == nullptr) {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
 
 TEST(ThreadedPipeline, AShortageOfMemoryInMappingIsThrownByTrack) {
   const SyntheticWorld world = NoisyWorld();
@@ -182,6 +230,107 @@ TEST(ThreadedPipeline, AFinalAdjustmentReplacesThatOfTheLastLoop) {
   EXPECT_EQ(pipeline->times().samples().at("global_bundle_adjustment").size(), 1u);
 }
 
+// A pipeline whose mapper is stopped when it begins with a keyframe.
+class HurryOfTheMapper : public testing::Test {
+ protected:
+  struct Work {
+    size_t keyframes = 0;
+    size_t adjustments = 0;
+    bool operator==(const Work&) const = default;
+  };
+
+  HurryOfTheMapper() {
+    for (; next_ < 20; ++next_) {
+      TrackNext();
+      AwaitMapper();
+    }
+    EXPECT_GT(pipeline_->map()->keyframes().size(), 2U) << "else nothing is adjusted";
+    before_ = CountWork();
+  }
+
+  void TrackNext() { pipeline_->Track(PathFrame(world_, next_)); }
+  void AwaitMapper() const {
+    while (pipeline_->busy_threads() > 0) {
+      std::this_thread::yield();
+    }
+  }
+  // Tracks until the mapper has a keyframe to work on. It must be stopped by a ClosedGate.
+  void BeginKeyframe() {
+    for (const uint32_t end = next_ + 100; next_ < end && pipeline_->busy_threads() == 0; ++next_) {
+      TrackNext();
+    }
+    ASSERT_EQ(pipeline_->busy_threads(), 1);
+    ClosedGate::AwaitThread();
+  }
+  // Tracks so long that the camera leaves what the published map shows.
+  void TrackOn() {
+    for (const uint32_t end = next_ + 100; next_ < end; ++next_) {
+      TrackNext();
+    }
+  }
+  // Masks of frames that are no keyframes, without objects.
+  void AddLate(int count) {
+    for (int i = 0; i < count; ++i) {
+      pipeline_->AddDetections({.frame = FrameId(1'000'000), .detections = {}});
+    }
+  }
+  Work CountWork() const {
+    const StageTimes times = pipeline_->times();
+    const auto count = [&](const char* stage) {
+      const auto found = times.samples().find(stage);
+      return found != times.samples().end() ? found->second.size() : 0;
+    };
+    return {count("map_insert"), count("local_bundle_adjustment")};
+  }
+  // What the mapper has done since it was stopped.
+  Work Done() const {
+    AwaitMapper();
+    const Work now = CountWork();
+    return {now.keyframes - before_.keyframes, now.adjustments - before_.adjustments};
+  }
+
+ private:
+  const SyntheticWorld world_ = NoisyWorld();
+  const SystemOptions options_;
+  const std::unique_ptr<Pipeline> pipeline_ =
+      MakeThreadedPipeline(world_.sensor(), options_, Pace::kNeverWait);
+  uint32_t next_ = 0;
+  Work before_;
+};
+
+TEST_F(HurryOfTheMapper, IsThereWhileAKeyframeWaits) {
+  {
+    const ClosedGate gate;
+    BeginKeyframe();
+    TrackOn();
+  }
+  const Work done = Done();
+  EXPECT_GT(done.keyframes, 1U) << "no second keyframe was requested";
+  EXPECT_EQ(done.adjustments, 1U) << "only after the last of them there is time";
+}
+
+TEST_F(HurryOfTheMapper, IsNotThereWhileOnlyLateDetectionsWait) {
+  {
+    const ClosedGate gate;
+    BeginKeyframe();
+    AddLate(5);
+  }
+  EXPECT_EQ(Done(), (Work{.keyframes = 1, .adjustments = 1}));
+}
+
+TEST_F(HurryOfTheMapper, EndsWithTheLastKeyframeAlthoughLateDetectionsWait) {
+  {
+    const ClosedGate gate;
+    BeginKeyframe();
+    AddLate(2);
+    TrackOn();
+    AddLate(2);
+  }
+  const Work done = Done();
+  EXPECT_GT(done.keyframes, 1U) << "no second keyframe was requested";
+  EXPECT_EQ(done.adjustments, 1U);
+}
+
 TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
   const SyntheticWorld world = NoisyWorld();
   const SystemOptions options;
@@ -210,9 +359,7 @@ TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
 }  // namespace hullslam
 
 // If GCC inlines only some of these, it warns that they do not belong together.
-[[gnu::noinline]] void* operator new(size_t size) {
-  return hullslam::MemoryShortage::Allocate(size);
-}
+[[gnu::noinline]] void* operator new(size_t size) { return hullslam::Allocate(size); }
 [[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t& /*tag*/) noexcept {
   return std::malloc(size);
 }
