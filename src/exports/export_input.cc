@@ -42,9 +42,12 @@ void UseMap(const fs::path& path, ExportInput& input) {
   const MapOfRun& loaded = *input.map;
   input.model.camera = loaded.sensor.camera;
   input.model.keyframes.clear();
-  loaded.map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
-    input.model.keyframes.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
-  });
+  for (const auto& [frame, id] : loaded.map.keyframes_by_frame()) {  // in the order of time
+    if (const Keyframe* const keyframe = loaded.map.keyframes().Find(id)) {
+      input.model.keyframes.push_back(
+          {keyframe->frame->timestamp, Inverse(keyframe->cam_from_world)});
+    }
+  }
   input.model.points.clear();
   for (const Eigen::Vector3d& position : loaded.located.positions) {
     input.model.points.push_back({position, kGreyPoint});

@@ -12,14 +12,15 @@ namespace hullslam {
 template <typename IdType>
 class Contradictions {
  public:
-  // Counts one more and returns how many there are. `last_observer` is the newest keyframe that
-  // observes the landmark or object. If it is newer than before, the count begins again.
-  int Add(IdType id, KeyframeId last_observer) {
+  // Counts one more and returns how many there are. `last_seen` is the frame of the last keyframe
+  // in time that observes the landmark or object. If it is later than before, the count begins
+  // again.
+  int Add(IdType id, FrameId last_seen) {
     Entry& entry = entries_[id];
-    if (entry.count > 0 && entry.last_observer < last_observer) {
+    if (entry.count > 0 && entry.last_seen < last_seen) {
       entry.count = 0;
     }
-    entry.last_observer = last_observer;
+    entry.last_seen = last_seen;
     return ++entry.count;
   }
   // The next count begins again.
@@ -27,7 +28,7 @@ class Contradictions {
 
  private:
   struct Entry {
-    KeyframeId last_observer;
+    FrameId last_seen;
     int count = 0;
   };
   std::map<IdType, Entry> entries_;

@@ -6,15 +6,11 @@
 #include <cstdint>
 #include <map>
 
+#include "map/keyframe_order.h"
 #include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {
-
-FrameId FrameOf(const Map& map, KeyframeId id) {
-  const Keyframe* const keyframe = map.keyframes().Find(id);
-  return keyframe != nullptr ? keyframe->frame->id : map.culled().At(id).frame;
-}
 
 // The island with most keyframes of frames before `end`, culled ones included; ties go to the
 // oldest island. Invalid if there are no such keyframes.
@@ -22,7 +18,7 @@ IslandId LargestIsland(const Map& map, FrameId end) {
   std::map<IslandId, size_t> sizes;
   for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
     const IslandId island = IslandOf(map, KeyframeId(i));
-    if (island.IsValid() && FrameOf(map, KeyframeId(i)) < end) {
+    if (island.IsValid() && FrameIdOf(map, KeyframeId(i)) < end) {
       ++sizes[island];
     }
   }

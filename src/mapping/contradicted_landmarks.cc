@@ -7,6 +7,7 @@
 
 #include "camera/point_measurement.h"
 #include "map/covisibility.h"
+#include "map/keyframe_order.h"
 #include "map/landmark_projection.h"
 #include "util/chi_square.h"
 
@@ -79,14 +80,14 @@ size_t EraseContradictedLandmarks(Map& map, KeyframeId current, const Sensor& se
   std::vector<LandmarkId> contradicted;
   for (const LandmarkId id : ObservedLandmarks(map, neighbours)) {
     const Landmark& landmark = map.landmarks().At(id);
-    const KeyframeId last_observer = landmark.observations.back().keyframe;
-    if (last_observer >= current) {
+    const FrameId last_seen = FrameIdOf(map, LastObserver(map, landmark.observations));
+    if (last_seen >= keyframe.frame->id) {
       continue;
     }
     const Sight sight = LookAt(sensor, keyframe, landmark);
     if (sight == Sight::kSurface) {
       contradictions.Forget(id);
-    } else if (sight == Sight::kPast && contradictions.Add(id, last_observer) == kContradictions) {
+    } else if (sight == Sight::kPast && contradictions.Add(id, last_seen) == kContradictions) {
       contradicted.push_back(id);
     }
   }

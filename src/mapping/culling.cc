@@ -10,6 +10,7 @@
 #include <span>
 
 #include "map/islands.h"
+#include "map/keyframe_order.h"
 #include "mapping/sensor_rules.h"
 #include "objects/point_statistics.h"
 #include "objects/resolved_observation.h"
@@ -100,19 +101,6 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const Cull
          (has_many_close || all.MostAreRedundant());
 }
 
-// The nearest older (step -1) or newer (step 1) keyframe of the same island. Null if there is none.
-const Keyframe* NextInTime(const Map& map, KeyframeId id, int step) {
-  const IslandId island = map.keyframes().At(id).island;
-  const auto end = static_cast<int64_t>(map.keyframes().NextId().value);
-  for (int64_t i = int64_t{id.value} + step; i >= 0 && i < end; i += step) {
-    const Keyframe* const keyframe = map.keyframes().Find(KeyframeId(static_cast<uint32_t>(i)));
-    if (keyframe != nullptr && keyframe->island == island) {
-      return keyframe;
-    }
-  }
-  return nullptr;
-}
-
 int CountShared(const Keyframe& a, const Keyframe& b) {
   IdSet<LandmarkId> of_a;
   for (const LandmarkId id : a.landmarks) {
@@ -129,8 +117,8 @@ int CountShared(const Keyframe& a, const Keyframe& b) {
 // be seen by many others and yet none of them see it on both sides.
 bool JoinsItsNeighbours(const Map& map, KeyframeId id, int min_shared) {
   const Keyframe& keyframe = map.keyframes().At(id);
-  const Keyframe* const before = NextInTime(map, id, -1);
-  const Keyframe* const after = NextInTime(map, id, 1);
+  const Keyframe* const before = NextInTime(map, keyframe.frame->id, keyframe.island, -1);
+  const Keyframe* const after = NextInTime(map, keyframe.frame->id, keyframe.island, 1);
   if (before == nullptr || after == nullptr) {
     return false;
   }
@@ -184,7 +172,7 @@ void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
     if (landmark == nullptr || IslandOf(map, landmark->reference) != island) {
       return true;
     }
-    const uint32_t age = current.value - landmark->created_by.value;
+    const uint32_t age = AgeOf(map, landmark->created_by, current, kTrialKeyframes + 1);
     const bool is_seldom_found = landmark->found < kMinFoundRatio * landmark->visible;
     const bool is_weak = age >= kTrialKeyframes && landmark->observation_weight <= max_weak;
     if (is_seldom_found || is_weak) {
@@ -197,9 +185,10 @@ void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
 
 std::vector<LandmarkId> FindRecentLandmarks(const Map& map) {
   std::vector<LandmarkId> recent;
+  const KeyframeId newest(map.keyframes().NextId().value - 1);
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    const uint32_t age_at_next = map.keyframes().NextId().value - landmark.created_by.value;
-    if (age_at_next <= kTrialKeyframes + 1) {
+    const uint32_t age = AgeOf(map, landmark.created_by, newest, kTrialKeyframes + 1);
+    if (age <= kTrialKeyframes) {  // at the next keyframe it is one more
       recent.push_back(id);
     }
   });

@@ -2,6 +2,7 @@
 #include "mapping/old_keyframes.h"
 
 #include "map/compaction.h"
+#include "map/keyframe_order.h"
 #include "util/id_set.h"
 
 namespace hullslam {
@@ -30,7 +31,7 @@ void CompactOldKeyframes(Map& map, KeyframeId current, std::vector<KeyframeId>& 
     if (!map.keyframes().Contains(id)) {
       return true;
     }
-    if (current.value - id.value <= kYoungKeyframes || near.Contains(id)) {
+    if (AgeOf(map, id, current, kYoungKeyframes + 1) <= kYoungKeyframes || near.Contains(id)) {
       return false;
     }
     CompactKeyframe(map, id);

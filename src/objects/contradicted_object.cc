@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "objects/contradicted_object.h"
 
+#include "map/keyframe_order.h"
 #include "objects/visibility.h"
 
 namespace hullslam {
@@ -9,11 +10,11 @@ bool IsContradicted(const Map& map, const Sensor& sensor, KeyframeId current, Ob
                     const ChangeOptions& options, Contradictions<ObjectId>& contradictions) {
   const Keyframe& keyframe = map.keyframes().At(current);
   const ObjectLandmark& object = map.objects().At(id);
-  const KeyframeId last_observer = object.observations.back().keyframe;
-  return last_observer < current &&
+  const FrameId last_seen = FrameIdOf(map, LastObserver(map, object.observations));
+  return last_seen < keyframe.frame->id &&
          SeesThrough(sensor, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
                      options.min_seen_through) &&
-         contradictions.Add(id, last_observer) >= options.min_keyframes;
+         contradictions.Add(id, last_seen) >= options.min_keyframes;
 }
 
 }  // namespace hullslam

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "map/islands.h"
+#include "map/keyframe_order.h"
 #include "objects/association.h"
 #include "objects/contradicted_object.h"
 #include "objects/fusion.h"
@@ -363,10 +364,9 @@ std::optional<Objection> ObjectMapper::ReasonToCull(const Map& map, KeyframeId k
   if (object.observations.empty()) {
     return seldom("no keyframe observes the object any more");
   }
+  const auto patience = static_cast<uint32_t>(culling.candidate_keyframes);
   if (object.state == ObjectState::kCandidate &&
-      object.observations.back().keyframe.value +
-              static_cast<uint32_t>(culling.candidate_keyframes) <
-          keyframe.value) {
+      AgeOf(map, LastObserver(map, object.observations), keyframe, patience + 1) > patience) {
     return seldom(
         fmt::format("not mapped yet, and not seen for {} keyframes", culling.candidate_keyframes));
   }

@@ -49,8 +49,7 @@ class ContradictedLandmarks : public testing::Test {
   }
 
   KeyframeId Look(const cv::Mat& depth, const Rigid3& cam_from_world) {
-    const std::shared_ptr<Frame> frame =
-        MakeFrame(map_.keyframes().NextId().value, kShared + 1, kShared + 1);
+    const std::shared_ptr<Frame> frame = MakeFrame(next_frame_++, kShared + 1, kShared + 1);
     frame->depth = DepthGrid(depth, 1000.0);
     return map_.AddKeyframe(frame, cam_from_world);
   }
@@ -75,6 +74,7 @@ class ContradictedLandmarks : public testing::Test {
   const Sensor sensor_ = SyntheticSensor();
   Map map_;
   Contradictions<LandmarkId> contradictions_;
+  uint32_t next_frame_ = 0;
   KeyframeId last_;
   LandmarkId thing_;
 };
@@ -107,6 +107,24 @@ TEST_F(ContradictedLandmarks, AnOccluderBetweenContradictionsChangesNothing) {
   See(Depth(kNear));
   EXPECT_TRUE(IsThere()) << "the newest keyframe does not contradict it";
   EXPECT_EQ(See(Depth(kWall)), 1U);
+}
+
+// Late masks make a keyframe of a frame that was taken before the thing was seen last.
+TEST_F(ContradictedLandmarks, AFrameBeforeTheLastObservationSaysNothing) {
+  See(Depth(kWall));
+  See(Depth(kWall));
+  next_frame_ = 100;
+  See(Depth(1000), true);
+  for (const uint32_t frame : {50U, 60U, 70U, 80U}) {
+    next_frame_ = frame;
+    EXPECT_EQ(See(Depth(kWall)), 0U);
+  }
+  next_frame_ = 101;
+  EXPECT_EQ(See(Depth(kWall)), 0U);
+  next_frame_ = 102;
+  EXPECT_EQ(See(Depth(kWall)), 0U);
+  next_frame_ = 103;
+  EXPECT_EQ(See(Depth(kWall)), 1U) << "three frames after it";
 }
 
 // In a place that is mapped well, keyframes are culled soon.

@@ -104,6 +104,31 @@ TEST_F(RecentLandmarksTest, ThatNoLongerExistLeaveTheList) {
   EXPECT_EQ(recent, std::vector{by});
 }
 
+// Late masks make a keyframe of a frame before the landmarks were made. Nothing is older then, and
+// a landmark that this keyframe makes is as old as the keyframes after it say.
+TEST_F(RecentLandmarksTest, AreNoOlderAfterAKeyframeOfAnEarlierFrame) {
+  map_.AddKeyframe(MakeFrame(20, 300, 300), Rigid3());  // keyframe 5
+  SetParent(map_, KeyframeId(5), KeyframeId(0));
+  const LandmarkId weak = map_.AddLandmark({0.0, 0.0, 3.0}, KeyframeId(5));
+  map_.AddObservation(weak, KeyframeId(5), 0);
+  for (const uint32_t frame : {10U, 11U, 12U}) {
+    const KeyframeId late = map_.AddKeyframe(MakeFrame(frame, 300, 300), Rigid3());
+    SetParent(map_, late, KeyframeId(0));
+    ExpectKept(weak, late.value, true, "a keyframe of an earlier frame");
+  }
+  const LandmarkId of_late = map_.AddLandmark({0.0, 0.0, 3.0}, KeyframeId(8));
+  map_.AddObservation(of_late, KeyframeId(8), 0);
+  map_.AddKeyframe(MakeFrame(30, 300, 300), Rigid3());  // keyframe 9
+  SetParent(map_, KeyframeId(9), KeyframeId(0));
+  ExpectKept(weak, 9, true, "one keyframe later");
+  ExpectKept(of_late, 9, true, "one keyframe later");
+  EXPECT_EQ(FindRecentLandmarks(map_), (std::vector<LandmarkId>{weak, of_late}));
+  map_.AddKeyframe(MakeFrame(31, 300, 300), Rigid3());  // keyframe 10
+  SetParent(map_, KeyframeId(10), KeyframeId(0));
+  ExpectCulled(weak, 10, "two keyframes later");
+  ExpectCulled(of_late, 10, "two keyframes later");
+}
+
 constexpr size_t kMinObjectViews = 3;
 
 int Cull(Map& map, KeyframeId current, const Sensor& sensor) {
@@ -255,14 +280,32 @@ TEST(CullKeyframes, ByTheRuleOfOrbSlam2MonocularViewpointsAreNotCompared) {
   EXPECT_EQ(CullKeyframes(together.map, KeyframeId(7), sensor, 3, MappingRule::kOrbSlam2), 5);
 }
 
-// Keyframes 0 to 3 see one side of a passage, 5 to 8 the other one, and keyframe 4 sees both. They
-// all see `across` landmarks. The others stay, because each of them is needed by an object.
-Map PassageBetweenTwoSides(int across) {
+// In which order and with which others the keyframes of a passage are made.
+enum class Making { kInTime, kMiddleLate, kWithOtherIsland };
+
+// Keyframes 0 to 3 see one side of a passage, the last four the other one, and the middle one sees
+// both. They all see `across` landmarks. The others stay, because each of them is needed by an
+// object. `middle` is the middle one.
+Map PassageBetweenTwoSides(int across, Making making, KeyframeId& middle) {
   Map map;
   std::vector<KeyframeId> ids;
+  const auto add_elsewhere = [&](uint32_t frame) {
+    if (making == Making::kWithOtherIsland) {
+      map.AddKeyframe(MakeFrame(frame, 10), Rigid3(), IslandId(1));
+    }
+  };
   for (uint32_t i = 0; i < 9; ++i) {
-    ids.push_back(AddKeyframe(map, 300, 300));
+    if (making == Making::kMiddleLate && i == 4) {
+      continue;
+    }
+    add_elsewhere(3 * i + 1);
+    ids.push_back(map.AddKeyframe(MakeFrame(3 * i, 300, 300), Rigid3()));
+    add_elsewhere(3 * i + 2);
   }
+  if (making == Making::kMiddleLate) {
+    ids.insert(ids.begin() + 4, map.AddKeyframe(MakeFrame(12, 300, 300), Rigid3()));
+  }
+  middle = ids[4];
   Share(map, {ids.begin(), ids.begin() + 5}, 60);
   Share(map, {ids.begin() + 4, ids.end()}, 60);
   Share(map, ids, across);
@@ -277,15 +320,20 @@ Map PassageBetweenTwoSides(int across) {
 
 // Four others see each of its landmarks, but none of them sees both sides.
 TEST(CullKeyframes, AKeyframeThatJoinsItsNeighboursStays) {
-  const auto is_culled = [](int across) {
-    Map map = PassageBetweenTwoSides(across);
-    Cull(map, KeyframeId(8), SyntheticSensor());
-    EXPECT_EQ(map.keyframes().size(), map.keyframes().Contains(KeyframeId(4)) ? 9u : 8u);
-    return !map.keyframes().Contains(KeyframeId(4));
-  };
-  EXPECT_FALSE(is_culled(0));
-  EXPECT_FALSE(is_culled(99));
-  EXPECT_TRUE(is_culled(100));
+  for (const Making making : {Making::kInTime, Making::kMiddleLate, Making::kWithOtherIsland}) {
+    const auto is_culled = [&](int across) {
+      KeyframeId middle;
+      Map map = PassageBetweenTwoSides(across, making, middle);
+      const size_t before = map.keyframes().size();
+      Cull(map, *map.KeyframeOfFrame(FrameId(24)), SyntheticSensor());
+      const bool is_there = map.keyframes().Contains(middle);
+      EXPECT_EQ(map.keyframes().size(), is_there ? before : before - 1);
+      return !is_there;
+    };
+    EXPECT_FALSE(is_culled(0)) << static_cast<int>(making);
+    EXPECT_FALSE(is_culled(99)) << static_cast<int>(making);
+    EXPECT_TRUE(is_culled(100)) << static_cast<int>(making);
+  }
 }
 
 TEST(CullKeyframes, AFewLandmarksAreNoReasonForCulling) {

@@ -37,10 +37,20 @@ class ContradictedObject : public ::testing::Test {
     Join(id);
   }
   bool IsGoneAfter(int millimetres) {
+    return IsGoneAfter(millimetres, FrameId(map_.keyframes().NextId().value));
+  }
+  // The keyframe is made of this frame, and observes the object if `is_found`.
+  bool IsGoneAfter(int millimetres, FrameId id, bool is_found = false) {
     auto frame = std::make_shared<Frame>();
-    frame->id = FrameId(map_.keyframes().NextId().value);
+    frame->id = id;
+    if (is_found) {
+      frame->detections = {Detect({"cup", cup_}, sensor_, Rigid3())};
+    }
     frame->depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(millimetres)), 1000.0);
     Join(map_.AddKeyframe(std::move(frame), Rigid3()));
+    if (is_found) {
+      map_.AddObservation(id_, current_, 0);
+    }
     return IsContradicted(map_, sensor_, current_, id_, options_, contradictions_);
   }
 
@@ -75,6 +85,28 @@ TEST_F(ContradictedObject, IsThereAgainOnceItIsObserved) {
   EXPECT_FALSE(IsGoneAfter(2000));
   EXPECT_FALSE(IsGoneAfter(500)) << "the newest keyframe does not contradict it";
   EXPECT_TRUE(IsGoneAfter(2000));
+}
+
+// A mask says more than depth: that of glass is the depth behind it. So a keyframe that observes
+// the object does not contradict it, and the count begins again after it.
+TEST_F(ContradictedObject, IsThereWhereItIsObserved) {
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(10)));
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(11)));
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(12), true));
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(13)));
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(14)));
+  EXPECT_TRUE(IsGoneAfter(2000, FrameId(15)));
+}
+
+// Late masks make a keyframe of a frame that was taken before the last observation.
+TEST_F(ContradictedObject, AFrameBeforeTheLastObservationSaysNothing) {
+  EXPECT_FALSE(IsGoneAfter(1000, FrameId(100), true));
+  for (const uint32_t frame : {50U, 60U, 70U, 80U}) {
+    EXPECT_FALSE(IsGoneAfter(2000, FrameId(frame)));
+  }
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(101)));
+  EXPECT_FALSE(IsGoneAfter(2000, FrameId(102)));
+  EXPECT_TRUE(IsGoneAfter(2000, FrameId(103)));
 }
 
 }  // namespace

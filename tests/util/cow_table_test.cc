@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <random>
@@ -56,6 +57,30 @@ TEST(CowTable, VisitsInOrderOfIds) {
   EXPECT_EQ(visited,
             (std::vector<uint32_t>{1, 2, 3, 4, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21}));
   EXPECT_EQ(table.size(), visited.size());
+}
+
+// Chunks and whole blocks between the ids have no values, before and after some were erased.
+TEST(CowTable, FindsTheNearestIdsWithValues) {
+  Table table;
+  const std::vector<uint32_t> ids = {3, 4, 11, 90, 2000, 2001, 50'000};
+  for (const uint32_t id : ids) {
+    table.Put(LandmarkId(id), "value");
+  }
+  table.Put(LandmarkId(700), "erased");
+  table.Put(LandmarkId(60'000), "erased");
+  table.Erase(LandmarkId(700));
+  table.Erase(LandmarkId(60'000));
+  for (uint32_t id = 0; id < 70'000; id += id < 3000 ? 1 : 997) {
+    const auto after = std::upper_bound(ids.begin(), ids.end(), id);
+    const auto before = std::lower_bound(ids.begin(), ids.end(), id);
+    EXPECT_EQ(table.After(LandmarkId(id)), after != ids.end() ? LandmarkId(*after) : LandmarkId());
+    EXPECT_EQ(table.Before(LandmarkId(id)),
+              before != ids.begin() ? LandmarkId(*std::prev(before)) : LandmarkId());
+  }
+  EXPECT_EQ(table.After(LandmarkId()), LandmarkId());
+  EXPECT_EQ(table.Before(LandmarkId()), LandmarkId(50'000));
+  EXPECT_EQ(Table().After(LandmarkId(0)), LandmarkId());
+  EXPECT_EQ(Table().Before(LandmarkId(5)), LandmarkId());
 }
 
 TEST(CowTable, PutStoresAValueUnderAnId) {

@@ -138,6 +138,8 @@ class Map {
   double ScaleOf(KeyframeId keyframe) const;
   // The keyframe made of this frame, culled or not.
   std::optional<KeyframeId> KeyframeOfFrame(FrameId frame) const;
+  // The keyframes by their frames, culled ones included.
+  const CowTable<FrameId, KeyframeId>& keyframes_by_frame() const { return keyframe_of_frame_; }
   // The keyframe itself or, if it is culled, the nearest ancestor that is not. Invalid if that was
   // removed with its island; then the keyframe has no pose.
   KeyframeId NearestAlive(KeyframeId keyframe) const;

@@ -149,6 +149,29 @@ class CowTable {
     --size_;
   }
 
+  // The nearest id after or before `id` that has a value; an invalid one if there is none. Ranges
+  // without values are skipped quickly.
+  IdType After(IdType id) const {
+    const size_t next = NextUsed(size_t{id.value} + 1);
+    return next < Capacity() ? IdType(static_cast<uint32_t>(next)) : IdType();
+  }
+  IdType Before(IdType id) const {
+    size_t end = std::min<size_t>(id.value, Capacity());
+    while (end > 0) {
+      const size_t index = end - 1;
+      const Block* const block = blocks_[index / kBlockSize].get();
+      const Chunk* const chunk =
+          block != nullptr ? block->chunks[IndexInBlock(index)].get() : nullptr;
+      if (chunk != nullptr && chunk->slots[index % kChunkSize]) {
+        return IdType(static_cast<uint32_t>(index));
+      }
+      end = block == nullptr   ? index / kBlockSize * kBlockSize
+            : chunk == nullptr ? index / kChunkSize * kChunkSize
+                               : index;
+    }
+    return IdType();
+  }
+
   Iterator begin() const { return {this, NextUsed(0)}; }
   std::default_sentinel_t end() const { return {}; }
 
