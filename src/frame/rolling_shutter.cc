@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "frame/keypoint_grid.h"
@@ -11,14 +13,6 @@
 
 namespace hullslam {
 namespace {
-
-// An affine map of the image.
-struct AffineMap {
-  Eigen::Matrix2d matrix = Eigen::Matrix2d::Identity();
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // px
-
-  Eigen::Vector2d operator*(const Eigen::Vector2d& point) const { return matrix * point + shift; }
-};
 
 // The axis of the image along which the exposure proceeds, and the size of the image along it, px.
 struct ReadoutAxis {
@@ -31,44 +25,103 @@ ReadoutAxis AxisOf(const Sensor& sensor) {
                                                              : ReadoutAxis{0, sensor.camera.width};
 }
 
-// Undoes an image velocity (px/s) that is the same for a whole object. The rows (or columns) of the
-// undistorted image are used as an approximation of those as read.
-AffineMap UndoVelocity(const Sensor& sensor, const Eigen::Vector2d& velocity) {
-  const ReadoutAxis axis = AxisOf(sensor);
-  const Eigen::Vector2d per_pixel = velocity * sensor.readout_time / axis.size;
-  AffineMap map;
-  map.matrix.col(axis.index) -= per_pixel;
-  map.shift = 0.5 * axis.size * per_pixel;
-  return map;
+// Maps undistorted pixels of the image as read to those that a global shutter would have taken.
+//
+// A row at the share p of the image was exposed at the time t = (p - 1/2) readout_time after the
+// middle one. A point at the ray r (z = 1) and the inverse depth q is at x(t) = r / q then, and
+// x(t) = Exp(t w) x(0) + t v with the angular and linear velocity w and v. So the middle row sees
+// the ray Exp(-t w) (r - t q v).
+class UndoMotion {
+ public:
+  UndoMotion(const Sensor& sensor, const PointVelocity& velocity)
+      : camera_(sensor.camera),
+        axis_(AxisOf(sensor)),
+        readout_time_(sensor.readout_time),
+        velocity_(velocity) {}
+
+  Eigen::Vector2d Move(const Eigen::Vector2d& pixel, double inverse_depth) const {
+    const double time = (camera_.Distort(pixel)[axis_.index] / axis_.size - 0.5) * readout_time_;
+    const Eigen::Vector3d ray =
+        camera_.Unproject(pixel, 1.0) - time * inverse_depth * velocity_.linear;
+    const Eigen::Vector3d moved = ExpSo3(-time * velocity_.angular) * ray;
+    // A point that the middle row could not see: its depth or the velocity is wrong.
+    return moved.z() > kLeastDepth ? camera_.Project(moved) : pixel;
+  }
+
+  // The derivative of Move() at a pixel.
+  Eigen::Matrix2d Derivative(const Eigen::Vector2d& pixel, double inverse_depth) const {
+    constexpr double kStep = 0.5;  // px
+    Eigen::Matrix2d derivative;
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(i);
+      derivative.col(i) =
+          (Move(pixel + step, inverse_depth) - Move(pixel - step, inverse_depth)) / (2.0 * kStep);
+    }
+    return derivative;
+  }
+
+ private:
+  static constexpr double kLeastDepth = 0.05;  // of that in the image as read
+
+  const PinholeCamera& camera_;
+  const ReadoutAxis axis_;
+  const double readout_time_;
+  const PointVelocity velocity_;
+};
+
+// The line after the motion of its points near `near`.
+Line2 Move(const UndoMotion& undo, double inverse_depth, const Line2& line,
+           const Eigen::Vector2d& near) {
+  const Eigen::Vector2d on_line = near - line.SignedDistance(near) * line.normal;
+  const Eigen::Vector2d normal =
+      (undo.Derivative(on_line, inverse_depth).inverse().transpose() * line.normal).normalized();
+  return {normal, -normal.dot(undo.Move(on_line, inverse_depth))};
 }
 
-Line2 Transform(const AffineMap& map, const Line2& line) {
-  const Eigen::Vector2d normal = map.matrix.inverse().transpose() * line.normal;
-  const double offset = line.offset - normal.dot(map.shift);
-  return {normal.normalized(), offset / normal.norm()};
+// The corner of the hull that a line with this outward normal touches.
+Eigen::Vector2d TouchingCorner(const Detection& detection, const Eigen::Vector2d& normal) {
+  const auto touching =
+      std::max_element(detection.hull.begin(), detection.hull.end(),
+                       [&](const auto& a, const auto& b) { return normal.dot(a) < normal.dot(b); });
+  return touching != detection.hull.end() ? *touching : detection.box.center();
 }
 
-void Transform(const AffineMap& map, Detection& detection) {
-  std::vector<Eigen::Vector2d> contour = detection.contour.Unpack();
-  for (Eigen::Vector2d& point : contour) {
-    point = map * point;
-  }
-  detection.contour = PackedPoints<2>(contour);
-  detection.box.setEmpty();
-  for (Eigen::Vector2d& point : detection.hull) {
-    point = map * point;
-    detection.box.extend(point);
-  }
+// The velocity in the frame of the right camera of a pair, which has moved by the baseline to the
+// side: the points are the same, so a point x of it moves as x + (baseline, 0, 0) does.
+PointVelocity OfRightCamera(const Sensor& sensor, const PointVelocity& velocity) {
+  return {velocity.angular,
+          velocity.linear + velocity.angular.cross(sensor.baseline() * Eigen::Vector3d::UnitX())};
+}
+
+// The points of the detection are at one depth.
+void Correct(const Sensor& sensor, const PointVelocity& velocity, double inverse_depth,
+             Detection& detection) {
+  const UndoMotion undo(sensor, velocity);
+  const UndoMotion undo_right(sensor, OfRightCamera(sensor, velocity));
+  const Eigen::Vector2d disparity(
+      sensor.kind == SensorKind::kStereo ? sensor.camera.bf * inverse_depth : 0.0, 0.0);
   for (SilhouetteLine& line : detection.lines) {
-    line.line = Transform(map, line.line);
+    line.line = Move(undo, inverse_depth, line.line, TouchingCorner(detection, line.line.normal));
   }
   for (SilhouetteLine& line : detection.right_lines) {
-    line.line = Transform(map, line.line);
+    line.line = Move(undo_right, inverse_depth, line.line,
+                     TouchingCorner(detection, line.line.normal) - disparity);
   }
   if (detection.ellipse) {
     Ellipse& ellipse = *detection.ellipse;
-    ellipse.center = map * ellipse.center;
-    ellipse.shape = map.matrix * ellipse.shape * map.matrix.transpose();
+    const Eigen::Matrix2d derivative = undo.Derivative(ellipse.center, inverse_depth);
+    ellipse.center = undo.Move(ellipse.center, inverse_depth);
+    ellipse.shape = derivative * ellipse.shape * derivative.transpose();
+  }
+  std::vector<Eigen::Vector2d> contour = detection.contour.Unpack();
+  for (Eigen::Vector2d& point : contour) {
+    point = undo.Move(point, inverse_depth);
+  }
+  detection.contour = PackedPoints<2>(contour);
+  detection.box.setEmpty();
+  for (Eigen::Vector2d& corner : detection.hull) {
+    corner = undo.Move(corner, inverse_depth);
+    detection.box.extend(corner);
   }
 }
 
@@ -109,28 +162,35 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
                                                std::span<const double> inverse_depths) {
   Check(inverse_depths.size() == frame.features.size(), "there must be one depth per keypoint");
   const PinholeCamera& camera = sensor.camera;
-  const ReadoutAxis axis = AxisOf(sensor);
+  const UndoMotion undo(sensor, velocity);
   auto corrected = std::make_shared<Frame>(frame);
   FrameFeatures& features = corrected->features;
   for (size_t i = 0; i < features.size(); ++i) {
-    const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
-    const double time = (camera.Distort(pixel)[axis.index] / axis.size - 0.5) * sensor.readout_time;
-    const Eigen::Vector2f moved =
-        (time * ImageVelocity(camera, velocity, pixel, inverse_depths[i])).cast<float>();
-    features.keypoints[i].undistorted -= moved;
+    Eigen::Vector2f& pixel = features.keypoints[i].undistorted;
+    const Eigen::Vector2f moved = undo.Move(pixel.cast<double>(), inverse_depths[i]).cast<float>();
     if (features.depth[i] > 0.0F && !camera.IsFisheye()) {
-      features.right_u[i] -= moved.x();
+      features.right_u[i] += moved.x() - pixel.x();
     }
+    pixel = moved;
   }
   features.grid = MakeKeypointGrid(features.keypoints, camera, sensor.bounds);
-  const double of_image = MedianOfKnown({inverse_depths.begin(), inverse_depths.end()});
-  for (Detection& detection : corrected->detections) {
-    const double inverse_depth = InverseDepthOf(detection, inverse_depths, of_image);
-    Transform(UndoVelocity(sensor,
-                           ImageVelocity(camera, velocity, detection.box.center(), inverse_depth)),
-              detection);
+  auto motion = std::make_shared<ShutterMotion>();
+  motion->velocity = velocity;
+  motion->inverse_depths.assign(inverse_depths.begin(), inverse_depths.end());
+  CorrectDetections(sensor, *motion, corrected->detections);
+  if (corrected->detections.empty()) {
+    corrected->shutter = std::move(motion);
   }
   return corrected;
+}
+
+void CorrectDetections(const Sensor& sensor, const ShutterMotion& motion,
+                       std::vector<Detection>& detections) {
+  const double of_image = MedianOfKnown(motion.inverse_depths);
+  for (Detection& detection : detections) {
+    Correct(sensor, motion.velocity, InverseDepthOf(detection, motion.inverse_depths, of_image),
+            detection);
+  }
 }
 
 }  // namespace hullslam

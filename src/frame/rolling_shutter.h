@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
@@ -26,14 +27,24 @@ Eigen::Vector2d ImageVelocity(const PinholeCamera& camera, const PointVelocity& 
                               const Eigen::Vector2d& pixel, double inverse_depth);
 
 // The frame of a rolling shutter as a global shutter would have taken it when the middle row (or
-// column) was exposed. A rolling shutter exposes one row after the other during
-// Sensor::readout_time, and the camera moves meanwhile. Keypoints are moved back by the motion of
-// their points in the image since the exposure of the middle row; detections are moved back by the
-// motion of a point at their centre. The inverse depth of a detection is the median over its
-// keypoints, or over all keypoints if none of its own is known. `inverse_depths`: one per keypoint,
-// 0 where it is unknown.
+// column) was exposed. A rolling shutter exposes one row of the raw image after the other during
+// Sensor::readout_time, and the camera moves meanwhile. Keypoints and the outlines of detections
+// are moved back by the motion of their points since the exposure of the middle row. All points of
+// a detection have one inverse depth: the median over its keypoints, or over all keypoints if none
+// of its own is known. `inverse_depths`: one per keypoint, 0 where it is unknown.
 std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor& sensor,
                                                const PointVelocity& velocity,
                                                std::span<const double> inverse_depths);
+
+// What the shutter of a frame was corrected with.
+struct ShutterMotion {
+  PointVelocity velocity;
+  std::vector<double> inverse_depths;  // one per keypoint, 0 where it is unknown
+};
+
+// Corrects detections of the frame as read in the same way. They may come later than the frame
+// (Frame::shutter).
+void CorrectDetections(const Sensor& sensor, const ShutterMotion& motion,
+                       std::vector<Detection>& detections);
 
 }  // namespace hullslam

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "hullslam/camera/pinhole.h"
 #include "hullslam/features/frame_features.h"
+#include "hullslam/frame/sensor.h"
 
 namespace hullslam {
 
@@ -15,8 +15,8 @@ namespace hullslam {
 // of the image's width and 1/12 of its height.
 class SeenDepths {
  public:
-  // `bounds`: of the undistorted image, px.
-  explicit SeenDepths(const PinholeCamera::Bounds& bounds) : bounds_(bounds) {}
+  // `sensor` must outlive this object. The cells divide the image of Sensor::ToGrid().
+  explicit SeenDepths(const Sensor& sensor) : sensor_(&sensor), bounds_(sensor.GridBounds()) {}
 
   // Adds a point at an undistorted pixel. Points that are not in front of the camera are left out.
   void Add(const Eigen::Vector2d& pixel, double depth);
@@ -34,8 +34,9 @@ class SeenDepths {
     int count = 0;
   };
 
-  size_t CellOf(const Eigen::Vector2d& pixel) const;
+  size_t CellOf(const Eigen::Vector2d& undistorted) const;
 
+  const Sensor* sensor_;
   PinholeCamera::Bounds bounds_;
   std::array<Mean, static_cast<size_t>(kColumns* kRows)> cells_{};
   Mean all_;

@@ -51,13 +51,16 @@ bool IsPlausible(const Sensor& sensor, double duration, uint32_t frames) {
   return duration >= frames * shortest && duration <= frames * kLongestStep;
 }
 
-// The median speed of the keypoints in the image, px/s.
-double ImageSpeed(const FrameFeatures& features, const PinholeCamera& camera,
+// The median speed of the keypoints in the image, px/s, as the bounds of motion measure it: in
+// pixels of Sensor::ToGrid().
+double ImageSpeed(const FrameFeatures& features, const Sensor& sensor,
                   const PointVelocity& velocity, std::span<const double> inverse_depths) {
   std::vector<double> speeds;
   for (size_t i = 0; i < features.size(); ++i) {
     const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
-    speeds.push_back(ImageVelocity(camera, velocity, pixel, inverse_depths[i]).norm());
+    const Eigen::Vector2d undistorted =
+        ImageVelocity(sensor.camera, velocity, pixel, inverse_depths[i]);
+    speeds.push_back((sensor.GridJacobian(pixel) * undistorted).norm());
   }
   return speeds.empty() ? 0.0 : Median(std::move(speeds));
 }
@@ -66,8 +69,7 @@ double ImageSpeed(const FrameFeatures& features, const PinholeCamera& camera,
 bool IsPlausible(const Sensor& sensor, const FrameFeatures& features, const PointVelocity& velocity,
                  std::span<const double> inverse_depths) {
   const double most = kMostMotion * std::min(sensor.camera.width, sensor.camera.height);
-  return ImageSpeed(features, sensor.camera, velocity, inverse_depths) <=
-         most * sensor.frames_per_second;
+  return ImageSpeed(features, sensor, velocity, inverse_depths) <= most * sensor.frames_per_second;
 }
 
 // Whether the velocity that corrected the last frames is still that of the camera.
@@ -81,8 +83,7 @@ bool IsContinuous(const Sensor& sensor, const FrameFeatures& features, const Poi
                   const PointVelocity& velocity, std::span<const double> inverse_depths) {
   const PointVelocity change{velocity.angular - before.angular, velocity.linear - before.linear};
   const double most = kMostChange * std::max(1.0, sensor.camera.width / kWidthOfChange);
-  return ImageSpeed(features, sensor.camera, change, inverse_depths) <=
-         most * sensor.frames_per_second;
+  return ImageSpeed(features, sensor, change, inverse_depths) <= most * sensor.frames_per_second;
 }
 
 // The frame with a global shutter, if the camera moved like this while it took so many frames. Null
@@ -102,7 +103,7 @@ std::shared_ptr<const Frame> Correct(const Frame& frame, const Sensor& sensor,
 // The depths in an image that shows these landmarks, one per keypoint.
 SeenDepths DepthsOf(const FrameFeatures& features, std::span<const LandmarkId> landmarks,
                     const Rigid3& cam_from_world, const Map& map, const Sensor& sensor) {
-  SeenDepths seen(sensor.bounds);
+  SeenDepths seen(sensor);
   for (size_t i = 0; i < landmarks.size(); ++i) {
     if (const Landmark* const landmark = map.landmarks().Find(landmarks[i])) {
       seen.Add(features.keypoints[i].undistorted.cast<double>(),
@@ -204,7 +205,7 @@ bool CorrectFrames(const Sensor& sensor, InitialMap& map) {
   if (sensor.readout_time == 0.0) {
     return false;
   }
-  std::vector<SeenDepths> seen(map.views.size(), SeenDepths(sensor.bounds));
+  std::vector<SeenDepths> seen(map.views.size(), SeenDepths(sensor));
   for (const InitialMap::Point& point : map.points) {
     for (const InitialMap::Observation& observation : point.observations) {
       const InitialMap::View& view = map.views[observation.view];

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -80,44 +84,138 @@ TEST(MeanVelocity, IsThatOfTheMotion) {
   EXPECT_LT((velocity.linear - Velocity().linear).norm(), 1e-2);
 }
 
+enum class Lens { kNone, kBarrel, kFisheye };
+
+PinholeCamera CameraWith(Lens lens) {
+  if (lens == Lens::kFisheye) {
+    return FisheyeCamera();
+  }
+  PinholeCamera camera = SyntheticSensor().camera;
+  camera.k1 = lens == Lens::kBarrel ? 0.2 : 0.0;
+  return camera;
+}
+
 struct Shutter {
-  double k1 = 0.0;  // of the lens
+  Lens lens = Lens::kNone;
   double readout_time = 0.0;
   ReadoutDirection direction = ReadoutDirection::kRows;
 };
 
-class GlobalShutter : public testing::TestWithParam<Shutter> {};
+// Distances are those of the raw image, since the undistorted one of a fisheye lens is stretched.
+class GlobalShutter : public testing::TestWithParam<Shutter> {
+ protected:
+  GlobalShutter() {
+    sensor_.camera = CameraWith(GetParam().lens);
+    sensor_.bounds = sensor_.camera.UndistortedBounds();
+    sensor_.readout_time = GetParam().readout_time;
+    sensor_.readout_direction = GetParam().direction;
+  }
+  double RawDistance(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    return (sensor_.camera.Distort(a) - sensor_.camera.Distort(b)).norm();
+  }
+  // The factor by which the field of view is wider than that of the camera without a fisheye lens.
+  double Wide() const { return GetParam().lens == Lens::kFisheye ? 4.0 : 1.0; }
+
+  Sensor sensor_ = SyntheticSensor();
+};
 
 TEST_P(GlobalShutter, SeesPointsWhereTheMiddleRowWouldSeeThem) {
-  Sensor sensor = RollingSensor();
-  sensor.camera.k1 = GetParam().k1;
-  sensor.readout_time = GetParam().readout_time;
-  sensor.readout_direction = GetParam().direction;
   std::vector<Eigen::Vector2d> seen, middle;
   std::vector<double> inverse_depths;
   for (const double x : {-0.8, -0.3, 0.8}) {
     for (const double y : {-0.7, -0.2, 0.4, 0.7}) {
-      const Eigen::Vector3d point(x, y, 2.0 + 0.5 * x);
-      seen.push_back(SeenWhileMoving(sensor, point));
-      middle.push_back(sensor.camera.Project(point));
+      const Eigen::Vector3d point(Wide() * x, Wide() * y, 2.0 + 0.5 * x);
+      seen.push_back(SeenWhileMoving(sensor_, point));
+      middle.push_back(sensor_.camera.Project(point));
       inverse_depths.push_back(1.0 / point.z());
     }
   }
-  const auto corrected = WithGlobalShutter(FrameOf(seen), sensor, Velocity(), inverse_depths);
+  const auto corrected = WithGlobalShutter(FrameOf(seen), sensor_, Velocity(), inverse_depths);
   double before = 0.0;
   for (size_t i = 0; i < seen.size(); ++i) {
     const Eigen::Vector2d pixel = corrected->features.keypoints[i].undistorted.cast<double>();
-    EXPECT_LT((pixel - middle[i]).norm(), 0.06) << middle[i].transpose();
-    before = std::max(before, (seen[i] - middle[i]).norm());
+    EXPECT_LT(RawDistance(pixel, middle[i]), 0.03) << middle[i].transpose();
+    before = std::max(before, RawDistance(seen[i], middle[i]));
   }
-  EXPECT_GT(before, 2.0);
+  EXPECT_GT(before, 1.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shutters, GlobalShutter,
-                         testing::Values(Shutter{0.0, kReadout}, Shutter{0.2, kReadout},
-                                         Shutter{0.2, -kReadout},
-                                         Shutter{0.2, kReadout, ReadoutDirection::kColumns},
-                                         Shutter{0.2, -kReadout, ReadoutDirection::kColumns}));
+// The outline of a disc that faces the camera, all at one depth, as the shutter sees it.
+TEST_P(GlobalShutter, SeesOutlinesWhereTheMiddleRowWouldSeeThem) {
+  for (const Eigen::Vector2d& place :
+       {Eigen::Vector2d(0.0, 0.0), {0.5, 0.4}, {-0.6, -0.45}, {0.6, -0.4}}) {
+    const Eigen::Vector3d center(Wide() * place.x(), Wide() * place.y(), 2.0);
+    Detection detection;
+    std::vector<Eigen::Vector2d> middle;
+    for (int i = 0; i < 40; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 40;
+      const Eigen::Vector3d point =
+          center + 0.2 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
+      detection.hull.push_back(SeenWhileMoving(sensor_, point));
+      detection.box.extend(detection.hull.back());
+      middle.push_back(sensor_.camera.Project(point));
+    }
+    for (const double angle : {0.3, 1.7, 2.9, 4.4}) {
+      const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+      double reach = normal.dot(detection.hull[0]);
+      for (const Eigen::Vector2d& corner : detection.hull) {
+        reach = std::max(reach, normal.dot(corner));
+      }
+      detection.lines.push_back({{normal, -reach}, false});
+    }
+    detection.contour = PackedPoints<2>(detection.hull);
+    Frame frame = FrameOf({sensor_.camera.Project(center)});
+    frame.detections = {detection};
+    const std::vector<double> inverse_depths = {0.5};
+    const auto corrected = WithGlobalShutter(frame, sensor_, Velocity(), inverse_depths);
+    const Detection& after = corrected->detections[0];
+    for (size_t i = 0; i < middle.size(); ++i) {
+      EXPECT_LT(RawDistance(after.hull[i], middle[i]), 0.05) << place.transpose();
+      EXPECT_LT(RawDistance(after.contour.Unpack()[i], middle[i]), 0.05);
+    }
+    for (const SilhouetteLine& line : after.lines) {  // they still touch the hull
+      double nearest = -1e9;
+      for (const Eigen::Vector2d& corner : after.hull) {
+        nearest = std::max(nearest, line.line.SignedDistance(corner));
+      }
+      EXPECT_NEAR(nearest, 0.0, 0.02);
+      EXPECT_NEAR(line.line.normal.norm(), 1.0, 1e-12);
+    }
+  }
+}
+
+// Masks may come after the frame was tracked.
+TEST_P(GlobalShutter, DetectionsThatComeLaterAreCorrectedAsThoseInTime) {
+  Frame frame =
+      FrameOf({sensor_.camera.Undistort({250.0, 420.0}), sensor_.camera.Undistort({260.0, 430.0}),
+               sensor_.camera.Undistort({100.0, 40.0})});
+  Detection square;
+  for (const Eigen::Vector2d& corner :
+       {Eigen::Vector2d(200.0, 370.0), {300.0, 370.0}, {300.0, 470.0}, {200.0, 470.0}}) {
+    square.hull.push_back(sensor_.camera.Undistort(corner));
+    square.box.extend(square.hull.back());
+  }
+  square.keypoints = {0, 1};
+  const std::vector<double> inverse_depths = {0.5, 0.4, 1.5};
+  const auto late = WithGlobalShutter(frame, sensor_, Velocity(), inverse_depths);
+  std::vector<Detection> detections = {square};
+  ASSERT_NE(late->shutter, nullptr);
+  CorrectDetections(sensor_, *late->shutter, detections);
+  frame.detections = {square};
+  const auto in_time = WithGlobalShutter(frame, sensor_, Velocity(), inverse_depths);
+  EXPECT_EQ(in_time->shutter, nullptr) << "its detections are corrected already";
+  EXPECT_EQ(detections[0].hull, in_time->detections[0].hull);
+  EXPECT_NE(detections[0].hull, square.hull);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shutters, GlobalShutter,
+    testing::Values(Shutter{Lens::kNone, kReadout}, Shutter{Lens::kBarrel, kReadout},
+                    Shutter{Lens::kBarrel, -kReadout},
+                    Shutter{Lens::kBarrel, kReadout, ReadoutDirection::kColumns},
+                    Shutter{Lens::kBarrel, -kReadout, ReadoutDirection::kColumns},
+                    Shutter{Lens::kFisheye, kReadout}, Shutter{Lens::kFisheye, -kReadout},
+                    Shutter{Lens::kFisheye, kReadout, ReadoutDirection::kColumns}));
 
 TEST(WithGlobalShutter, FindsKeypointsWhereTheyAreNow) {
   const Sensor sensor = RollingSensor();
@@ -230,6 +328,45 @@ TEST(WithGlobalShutter, ADetectionWithoutKeypointsIsAsFarAwayAsTheRest) {
       WithGlobalShutter(frame, RollingSensor(), {.linear = {1.0, 0.0, 0.0}}, depths);
   EXPECT_NEAR(corrected->detections[0].hull[0].x(),
               200.0 - 250.0 * kReadout * (370.0 / 480.0 - 0.5), 1e-9);
+}
+
+// A line of the right image is moved by the motion of its points in that image.
+TEST(WithGlobalShutter, MovesTheLinesOfTheRightImage) {
+  Sensor sensor = RollingSensor();
+  sensor.kind = SensorKind::kStereo;
+  sensor.camera.bf = 250.0;  // 0.5 m
+  const PointVelocity velocity{{0.4, -0.6, 0.8}, {-0.4, 0.6, 0.3}};
+  const auto motion_until = [&](double time) {
+    return Rigid3(ExpSo3(time * velocity.angular), time * velocity.linear);
+  };
+  const auto seen_by_right = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d baseline(sensor.baseline(), 0.0, 0.0);
+    Eigen::Vector2d pixel = sensor.camera.Project(point - baseline);
+    for (int i = 0; i < 20; ++i) {
+      const double time = (pixel.y() / sensor.camera.height - 0.5) * sensor.readout_time;
+      pixel = sensor.camera.Project(motion_until(time) * point - baseline);
+    }
+    return pixel;
+  };
+  // The lower side of a square at 2 m, near the bottom of the image.
+  const Eigen::Vector3d left(-0.1, 0.8, 2.0), right(0.0, 0.8, 2.0);
+  const Eigen::Vector2d a = seen_by_right(left), b = seen_by_right(right);
+  const Eigen::Vector2d normal = Eigen::Vector2d(a.y() - b.y(), b.x() - a.x()).normalized();
+  Detection detection = SquareAtTheBottom();
+  detection.hull = {sensor.camera.Project({-0.1, 0.7, 2.0}), sensor.camera.Project({0.0, 0.7, 2.0}),
+                    sensor.camera.Project(right), sensor.camera.Project(left)};
+  detection.keypoints = {0};
+  detection.right_lines = {{{normal, -normal.dot(a)}, false}};
+  Frame frame = FrameOf({sensor.camera.Project({-0.05, 0.75, 2.0})});
+  frame.detections = {detection};
+  const std::vector<double> inverse_depths = {0.5};
+  const auto corrected = WithGlobalShutter(frame, sensor, velocity, inverse_depths);
+  const Line2& line = corrected->detections[0].right_lines[0].line;
+  const Eigen::Vector3d baseline(sensor.baseline(), 0.0, 0.0);
+  for (const Eigen::Vector3d& point : {left, right}) {
+    EXPECT_GT((seen_by_right(point) - sensor.camera.Project(point - baseline)).norm(), 2.0);
+    EXPECT_NEAR(line.SignedDistance(sensor.camera.Project(point - baseline)), 0.0, 0.05);
+  }
 }
 
 TEST(WithGlobalShutter, NeedsADepthPerKeypoint) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hullslam/camera/depth.h"
+#include "support/fisheye_camera.h"
 
 namespace hullslam {
 namespace {
@@ -22,6 +23,41 @@ TEST(Sensor, BaselineIsThatOfTheVirtualRightCamera) {
   const auto left_u = static_cast<float>(sensor.camera.Project(in_left).x());
   EXPECT_NEAR(VirtualRight(left_u, 2.5f, sensor.camera.bf), sensor.camera.Project(in_right).x(),
               1e-4);
+}
+
+// Pixels are those of the raw image, rounded.
+TEST(Sensor, DoesNotSeeWhatTheMaskOfAllImagesIgnores) {
+  for (PinholeCamera camera :
+       {PinholeCamera{.fx = 300.0, .fy = 300.0, .cx = 320.0, .cy = 240.0}, FisheyeCamera()}) {
+    camera.k1 = 0.02;
+    Sensor sensor;
+    sensor.camera = camera;
+    sensor.bounds = camera.UndistortedBounds();
+    const Eigen::Vector2d used = camera.Undistort({219.4, 100.0});
+    const Eigen::Vector2d ignored = camera.Undistort({219.6, 100.0});
+    EXPECT_TRUE(sensor.Sees(used));
+    EXPECT_TRUE(sensor.Sees(ignored));
+    sensor.mask_all = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+    sensor.mask_all(cv::Rect(220, 0, 100, 480)).setTo(0);
+    EXPECT_TRUE(sensor.Sees(used)) << camera.IsFisheye();
+    EXPECT_FALSE(sensor.Sees(ignored)) << camera.IsFisheye();
+    EXPECT_FALSE(sensor.IsIgnored({-1.0, 100.0}));
+    EXPECT_FALSE(sensor.IsIgnored({250.0, 480.0}));
+  }
+}
+
+// Of a fisheye lens the grid is the raw image.
+TEST(Sensor, TheDerivativeOfTheGridIsThatOfItsPixels) {
+  for (const PinholeCamera& camera :
+       {PinholeCamera{.fx = 300.0, .fy = 300.0, .cx = 320.0, .cy = 240.0, .k1 = 0.1},
+        FisheyeCamera()}) {
+    Sensor sensor;
+    sensor.camera = camera;
+    const Eigen::Vector2d pixel = camera.Undistort({480.0, 130.0});
+    const Eigen::Vector2d step(0.3, -0.2);
+    const Eigen::Vector2d moved = 0.5 * (sensor.ToGrid(pixel + step) - sensor.ToGrid(pixel - step));
+    EXPECT_LT((sensor.GridJacobian(pixel) * step - moved).norm(), 1e-5);
+  }
 }
 
 }  // namespace

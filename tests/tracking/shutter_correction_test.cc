@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -312,6 +314,91 @@ TEST_P(ShutterCorrection, TheMostChangeOfTheVelocityGrowsWithTheImage) {
   EXPECT_EQ(MeasureGlobalShutter(view.frame, made_.map, sensor_, last_, estimate), view.frame);
   sensor_.camera.width *= 2;
   EXPECT_NE(MeasureGlobalShutter(view.frame, made_.map, sensor_, last_, estimate), view.frame);
+}
+
+// A camera that turns about its vertical axis, with keypoints all over the image. The bounds of its
+// motion are pixels of the raw image.
+class TurningCamera : public testing::Test {
+ protected:
+  void Make(const PinholeCamera& camera) {
+    sensor_.camera = camera;
+    sensor_.bounds = camera.UndistortedBounds();
+    sensor_.readout_time = 0.02;
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(1);
+    frame->timestamp = 1.0;
+    for (int x = 20; x < camera.width; x += 40) {
+      for (int y = 20; y < camera.height; y += 40) {
+        if (camera.SeesRaw({x, y})) {
+          frame->features.keypoints.push_back(
+              {.undistorted = camera.Undistort({x, y}).cast<float>()});
+        }
+      }
+    }
+    const size_t count = frame->features.size();
+    frame->features.descriptors.resize(count);
+    frame->features.depth.resize(count, 0.0F);
+    frame->features.right_u.resize(count, -1.0F);
+    frame_ = frame;
+    auto before = std::make_shared<Frame>();
+    before->id = FrameId(0);
+    before->timestamp = frame->timestamp - 1.0 / sensor_.frames_per_second;
+    last_.frame = before;
+  }
+  // Whether the shutter is corrected if the median keypoint has moved so far since the last image,
+  // px, and with `before` moved so far in the interval before that.
+  bool IsCorrected(double pixels, std::optional<double> before = std::nullopt) {
+    const double interval = 1.0 / sensor_.frames_per_second;
+    if (before) {
+      last_.velocity = TimedVelocity{{AngleOf(*before) / interval * Eigen::Vector3d::UnitY(), {}},
+                                     interval,
+                                     last_.frame->timestamp};
+      last_.velocity->velocity.linear.setZero();
+    }
+    PoseEstimate estimate;
+    estimate.cam_from_world.rotation = ExpSo3(AngleOf(pixels) * Eigen::Vector3d::UnitY());
+    estimate.landmarks.resize(frame_->features.size());
+    return MeasureGlobalShutter(frame_, map_, sensor_, last_, estimate) != frame_;
+  }
+
+ private:
+  // The angle of a turn by which the median keypoint moves so far in the raw image.
+  double AngleOf(double pixels) const {
+    constexpr double kStep = 1e-4;  // rad
+    std::vector<double> moved;
+    for (const Keypoint& keypoint : frame_->features.keypoints) {
+      const Eigen::Vector2d pixel = keypoint.undistorted.cast<double>();
+      const Eigen::Vector3d ray = sensor_.camera.Unproject(pixel, 1.0);
+      const Eigen::Vector2d now =
+          sensor_.camera.Project(ExpSo3(kStep * Eigen::Vector3d::UnitY()) * ray);
+      moved.push_back((sensor_.camera.Distort(now) - sensor_.camera.Distort(pixel)).norm());
+    }
+    std::ranges::nth_element(moved, moved.begin() + static_cast<ptrdiff_t>(moved.size() / 2));
+    return pixels / moved[moved.size() / 2] * kStep;
+  }
+
+  Sensor sensor_ = SyntheticSensor();
+  Map map_;
+  LastFrame last_;
+  std::shared_ptr<const Frame> frame_;
+};
+
+TEST_F(TurningCamera, MayMoveByHalfOfTheRawImage) {
+  for (const PinholeCamera& camera : {SyntheticSensor().camera, FisheyeCamera()}) {
+    Make(camera);
+    EXPECT_TRUE(IsCorrected(225.0)) << camera.IsFisheye();
+    EXPECT_FALSE(IsCorrected(255.0)) << camera.IsFisheye();
+  }
+}
+
+TEST_F(TurningCamera, MayChangeItsMotionByThirtyRawPixels) {
+  for (const PinholeCamera& camera : {SyntheticSensor().camera, FisheyeCamera()}) {
+    Make(camera);
+    EXPECT_TRUE(IsCorrected(100.0, 72.0)) << camera.IsFisheye();
+    EXPECT_TRUE(IsCorrected(100.0, 128.0)) << camera.IsFisheye();
+    EXPECT_FALSE(IsCorrected(100.0, 68.0)) << camera.IsFisheye();
+    EXPECT_FALSE(IsCorrected(100.0, 132.0)) << camera.IsFisheye();
+  }
 }
 
 // Views of an initial map, four frames apart, and their points.

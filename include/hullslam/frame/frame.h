@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "hullslam/bow/bow_vector.h"
@@ -11,6 +12,8 @@
 
 namespace hullslam {
 
+struct ShutterMotion;
+
 // The data extracted from one image. A frame does not change after it is built; the stages share
 // it.
 struct Frame {
@@ -20,6 +23,9 @@ struct Frame {
   std::vector<WordId> words;  // one per keypoint; empty without a vocabulary
   std::vector<Detection> detections;
   DepthGrid depth;  // empty without depth
+  // How the keypoints were corrected for a rolling shutter (frame/rolling_shutter.h), for
+  // detections that come later. Null if they were not, and once there are detections.
+  std::shared_ptr<const ShutterMotion> shutter;
 };
 
 }  // namespace hullslam

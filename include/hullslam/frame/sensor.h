@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <opencv2/core/mat.hpp>
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
@@ -35,15 +37,33 @@ struct Sensor {
   // for a global shutter, which exposes the whole image at the same time.
   double readout_time = 0.0;
   ReadoutDirection readout_direction = ReadoutDirection::kRows;
+  // One mask for all images, such as that of the robot's own arm, and one for all right images of a
+  // stereo camera. Each is CV_8UC1 of the size of the raw image, 0 at pixels that are ignored;
+  // empty if all pixels are used.
+  cv::Mat mask_all;
+  cv::Mat mask_all_right;
 
-  // Whether an undistorted pixel is in the image.
+  // Whether an undistorted pixel is in the image and is used.
   bool Sees(const Eigen::Vector2d& pixel) const {
-    return bounds.Contains(pixel) && (!camera.IsFisheye() || camera.SeesRaw(camera.Distort(pixel)));
+    return bounds.Contains(pixel) &&
+           (!camera.IsFisheye() || camera.SeesRaw(camera.Distort(pixel))) &&
+           (mask_all.empty() || !IsIgnored(camera.Distort(pixel)));
+  }
+  // Whether `mask_all` ignores a raw pixel of the image.
+  bool IsIgnored(const Eigen::Vector2d& raw) const {
+    const auto x = static_cast<int>(std::lround(raw.x()));
+    const auto y = static_cast<int>(std::lround(raw.y()));
+    return x >= 0 && y >= 0 && x < mask_all.cols && y < mask_all.rows &&
+           mask_all.at<unsigned char>(y, x) == 0;
   }
   // The pixel in which distances in the image are measured, such as the windows of matching: the
   // raw one of a fisheye lens, whose undistorted image is stretched, else the undistorted one.
   Eigen::Vector2d ToGrid(const Eigen::Vector2d& pixel) const {
     return camera.IsFisheye() ? camera.Distort(pixel) : pixel;
+  }
+  // The derivative of ToGrid().
+  Eigen::Matrix2d GridJacobian(const Eigen::Vector2d& pixel) const {
+    return camera.IsFisheye() ? camera.DistortionJacobian(pixel) : Eigen::Matrix2d::Identity();
   }
   // The bounds of ToGrid().
   PinholeCamera::Bounds GridBounds() const {
