@@ -120,16 +120,29 @@ bool Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
 
 bool Mapper::Apply(const LateDetections& late, const Cancellation* hurry) {
   const std::optional<KeyframeId> keyframe = map_.KeyframeOfFrame(late.frame);
-  if (!keyframe) {
-    const std::optional<KeyframeRequest> request = RequestLateKeyframe(map_, late);
-    return request && Apply(*request, hurry);
+  if (keyframe && map_.keyframes().Contains(*keyframe)) {
+    return AddLate(*keyframe, late);
   }
-  if (!map_.keyframes().Contains(*keyframe) || !AddLateDetections(map_, *keyframe, late)) {
+  std::optional<KeyframeRequest> request;
+  {
+    const ScopedTimer timer(times_, "map_objects");
+    if (EraseDynamicLandmarks(map_, late) > 0) {
+      PublishSnapshot();
+    }
+    if (!keyframe && object_options_.enabled) {
+      request = RequestLateKeyframe(map_, sensor_, object_options_, late, late_requests_);
+    }
+  }
+  return request && Apply(*request, hurry);
+}
+
+bool Mapper::AddLate(KeyframeId keyframe, const LateDetections& late) {
+  if (!AddLateDetections(map_, sensor_, keyframe, late)) {
     return false;
   }
   if (object_options_.enabled) {
     const ScopedTimer timer(times_, "map_objects");
-    object_mapper_.Process(map_, *keyframe);
+    object_mapper_.Process(map_, keyframe);
   }
   PublishSnapshot();
   return true;

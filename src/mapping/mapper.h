@@ -17,6 +17,7 @@
 #include "hullslam/util/stage_timer.h"
 #include "map/contradictions.h"
 #include "objects/object_mapper.h"
+#include "objects/request_memory.h"
 #include "optim/bundle_result.h"
 
 namespace hullslam {
@@ -37,10 +38,10 @@ class Mapper {
   // called at most once, before all other functions.
   void Begin(Map map, Session session);
 
-  // Processes a message. `hurry` (may be null) is requested while another message waits. The mapper
-  // then leaves out the steps that are not necessary. An initial map becomes a new island if the
-  // map is not empty. Returns false for a correction that was dropped, because the map was
-  // corrected since the snapshot.
+  // Processes a message. `hurry` (may be null) is requested while an urgent message waits: any but
+  // late detections. The mapper then leaves out the steps that are not necessary. An initial map
+  // becomes a new island if the map is not empty. Returns false for a correction that was dropped,
+  // because the map was corrected since the snapshot.
   bool Process(const MapMessage& message, const Cancellation* hurry);
 
   // From now on, a keyframe without detections awaits them in a LateDetections, and says nothing
@@ -88,6 +89,7 @@ class Mapper {
   bool Apply(const KeyframeRequest& request, const Cancellation* hurry);
   bool Apply(const MapCorrection& correction, const Cancellation* hurry);
   bool Apply(const LateDetections& late, const Cancellation* hurry);
+  bool AddLate(KeyframeId keyframe, const LateDetections& late);
   void BeginSession();
   std::vector<ChangedObject> FindChanges() const;
   ObjectId FindLeft(const ChangedObject& changed) const;
@@ -117,6 +119,7 @@ class Mapper {
   size_t contradicted_landmarks_ = 0;
   size_t sized_keyframes_ = 0;  // views of objects of known size when the scale was last measured
   std::atomic<bool> awaits_masks_ = false;
+  RequestMemory late_requests_;     // keyframes that were made of frames with late masks
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
   std::vector<std::shared_ptr<const Map>> left_islands_;

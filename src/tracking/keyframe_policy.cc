@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/keyframe_policy.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "tracking/comparison/orb_slam2_keyframe_rule.h"
 
 namespace hullslam {
@@ -27,10 +24,8 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const bool is_leaving = evidence.next_overlap < min_next_overlap;
   const bool is_weak =
       is_leaving || lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
-  const double time_factor =
-      std::min(max_time_factor, std::exp2(evidence.fruitless_requests - patient_requests + 1));
   const bool lacks_objects =
-      evidence.unknown_objects > 0 && time >= time_for_objects * std::max(1.0, time_factor);
+      evidence.unknown_objects > 0 && time >= objects.TimeAfter(evidence.fruitless_requests);
   const bool seeks_join = evidence.has_islands && time >= time_for_joins;
   const bool is_overdue = time >= max_time_between;
   const bool is_urgent = is_overdue || is_abrupt || is_leaving || lacks_close_points;
@@ -40,6 +35,12 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
 bool KeyframePolicy::NeedsKeyframeForObjects(KeyframeEvidence evidence) const {
   const bool is_needed = NeedsKeyframe(evidence);
   evidence.unknown_objects = 0;
+  return is_needed && !NeedsKeyframe(evidence);
+}
+
+bool KeyframePolicy::NeedsKeyframeForJoin(KeyframeEvidence evidence) const {
+  const bool is_needed = NeedsKeyframe(evidence);
+  evidence.has_islands = false;
   return is_needed && !NeedsKeyframe(evidence);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hullslam/tracking/tracking_options.h"
+#include "objects/request_memory.h"
 
 namespace hullslam {
 
@@ -22,7 +23,9 @@ struct KeyframeEvidence {
       0;  // keyframes requested for objects alone since an object was last mapped
   double next_overlap = 1.0;  // share of the reference's view in the next image (NextOverlap)
   size_t keyframes = 0;
-  bool has_islands = false;  // parts of the map are not joined to one another
+  // Parts of the map are not joined to one another, and the frame may help to join them
+  // (JoinRequests).
+  bool has_islands = false;
   // s; absent if the camera was not relocalised.
   std::optional<double> time_since_relocalisation = std::nullopt;
   bool mapper_is_idle = true;
@@ -35,14 +38,10 @@ struct KeyframePolicy {
   int min_landmarks = 15;         // a frame with fewer would be a keyframe without connections
   double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
   double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
-  double time_for_objects = 1.0 / 3.0;  // s; after this time, also for objects that are not mapped
+  ObjectRequestRule objects;      // after its time, also for objects that are not mapped
   // s; after this time, also if there are islands, because only keyframes are compared with earlier
   // places, and a join needs two of them that show the same one.
   double time_for_joins = 1.0 / 3.0;
-  // Some detections can never be mapped. From this number of fruitless requests on, each further
-  // one doubles the time for objects, up to the largest factor.
-  int patient_requests = 4;
-  double max_time_factor = 16.0;
   // s. A time limit counts as reached up to this much earlier. It is half the time between two
   // frames, because time stamps are not exactly regular.
   double time_tolerance = 1.0 / 60.0;
@@ -81,8 +80,9 @@ struct KeyframePolicy {
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new
   // landmarks would be second copies of landmarks that the map already has.
   bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
-  // Whether a keyframe is needed only because of objects.
+  // Whether a keyframe is needed only because of objects, or only to join parts of the map.
   bool NeedsKeyframeForObjects(KeyframeEvidence evidence) const;
+  bool NeedsKeyframeForJoin(KeyframeEvidence evidence) const;
 };
 
 }  // namespace hullslam

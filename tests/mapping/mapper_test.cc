@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ios>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame/rolling_shutter.h"
 #include "map/invariants.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
@@ -418,6 +420,10 @@ class MapperLateMasksTest : public MapperTest {
   Detection DetectCup(uint32_t index) const {
     return Detect(cup_, world_.sensor(), SyntheticWorld::CamFromWorld(index));
   }
+  Detection DetectBook(uint32_t index) const {
+    return Detect(MakeObject("book", {0.5, 0.1, 1.6}, {0.1, 0.07, 0.05}), world_.sensor(),
+                  SyntheticWorld::CamFromWorld(index));
+  }
 
   bool AddLate(uint32_t index) {
     return mapper_->Process(
@@ -533,6 +539,109 @@ TEST_F(MapperLateMasksTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
   EXPECT_LT(error.translation.norm(), 0.02);
 }
 
+// As with masks in time, a keyframe is made only of a frame that shows something new.
+TEST_F(MapperLateMasksTest, AFrameThatShowsOnlyMappedObjectsBecomesNoKeyframe) {
+  ProcessFrame(0);
+  for (uint32_t index = 5; index <= 40; index += 5) {
+    ProcessWithCup(index);
+  }
+  ASSERT_EQ(OnlyObject().state, ObjectState::kMapped);
+  mapper_->AwaitMasks(true);
+  EXPECT_FALSE(mapper_->Process(OfTrackedFrame(80, {DetectCup(80)}), nullptr));
+  EXPECT_TRUE(mapper_->Process(OfTrackedFrame(81, {DetectCup(81), DetectBook(81)}), nullptr))
+      << "the book is not mapped";
+  EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
+}
+
+// A third of a second is ten frames. It does not matter which of the two frames is earlier.
+TEST_F(MapperLateMasksTest, AFrameNearAKeyframeWithDetectionsBecomesNoKeyframe) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  ProcessFrame(40);
+  ASSERT_TRUE(AddLate(40));
+  for (const uint32_t index : {31U, 39U, 41U, 49U}) {
+    EXPECT_FALSE(mapper_->Process(OfTrackedFrame(index, {DetectCup(index)}), nullptr)) << index;
+  }
+  EXPECT_TRUE(mapper_->Process(OfTrackedFrame(51, {DetectCup(51)}), nullptr));
+  EXPECT_FALSE(mapper_->Process(OfTrackedFrame(55, {DetectCup(55)}), nullptr)) << "51 is near";
+  EXPECT_TRUE(mapper_->Process(OfTrackedFrame(29, {DetectCup(29)}), nullptr));
+  EXPECT_TRUE(mapper_->Process(OfTrackedFrame(3, {DetectBook(3)}), nullptr))
+      << "keyframe 0 still waits for its masks";
+  EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
+}
+
+// Something that is never twice at the same place is never mapped.
+TEST_F(MapperLateMasksTest, ThingsThatAreNeverMappedMakeFewerAndFewerKeyframes) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  std::vector<uint32_t> made;
+  for (uint32_t index = 10; index < 200; ++index) {
+    const MadeObject somewhere =
+        MakeObject("bird", {0.3 * std::sin(2.0 * index), 0.2 * std::cos(3.0 * index), 1.2},
+                   {0.02, 0.03, 0.02});
+    const Detection detection =
+        Detect(somewhere, world_.sensor(), SyntheticWorld::CamFromWorld(index));
+    if (mapper_->Process(OfTrackedFrame(index, {detection}), nullptr)) {
+      made.push_back(index);
+    }
+  }
+  ASSERT_GE(made.size(), 5u);
+  EXPECT_LE(made.size(), 9u) << "one every 1/3 s would be 19";
+  for (size_t i = 2; i < made.size(); ++i) {
+    EXPECT_GE(made[i] - made[i - 1], made[i - 1] - made[i - 2]);
+  }
+}
+
+// Of 60 frames each of which gets masks late, hardly more become keyframes than without masks.
+TEST_F(MapperLateMasksTest, MasksOfAllFramesMakeFewKeyframes) {
+  mapper_->AwaitMasks(true);
+  const uint32_t before = 13;
+  for (uint32_t index = 0; index < 60; ++index) {
+    if (index % 5 == 0) {
+      ProcessFrame(index);
+    }
+    mapper_->Process(OfTrackedFrame(index, {DetectCup(index), DetectBook(index)}), nullptr);
+  }
+  EXPECT_LE(map().keyframes().NextId().value, before);
+  size_t mapped = 0;
+  map().objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    mapped += object.state == ObjectState::kMapped ? 1 : 0;
+  });
+  EXPECT_EQ(mapped, 2u);
+}
+
+// The detections of the message are those of the image as read.
+TEST_F(MapperLateMasksTest, LateDetectionsAreCorrectedAsTheShutterOfTheirFrameWas) {
+  Sensor sensor = world_.sensor();
+  sensor.readout_time = 0.03;
+  const auto corrected = [&](uint32_t index, std::vector<Detection> detections) {
+    Frame as_read = *world_.Observe(index).frame;
+    as_read.detections = std::move(detections);
+    const std::vector<double> inverse_depths(as_read.features.size(), 0.4);
+    return WithGlobalShutter(as_read, sensor, {{0.3, -0.8, 0.2}, {0.5, 0.2, -0.1}}, inverse_depths);
+  };
+  Mapper mapper(sensor, {}, ObjectOptions(), [this](auto map) { published_.push_back(map); });
+  mapper.AwaitMasks(true);
+  InitialMap initial = Initial(0);
+  initial.views[0].frame = corrected(0, {});
+  mapper.Process(initial, nullptr);
+  const auto expect_corrected = [&](uint32_t index) {
+    const Frame expected = *corrected(index, {DetectCup(index)});
+    const Frame& frame = *map().keyframes().At(*map().KeyframeOfFrame(FrameId(index))).frame;
+    ASSERT_EQ(frame.detections.size(), 1u);
+    EXPECT_EQ(frame.detections[0].hull, expected.detections[0].hull);
+    EXPECT_NE(frame.detections[0].hull, DetectCup(index).hull);
+    EXPECT_EQ(frame.shutter, nullptr) << "it would be corrected again";
+  };
+  LateDetections of_keyframe = OfTrackedFrame(0, {DetectCup(0)});
+  EXPECT_TRUE(mapper.Process(of_keyframe, nullptr));
+  expect_corrected(0);
+  LateDetections of_frame = OfTrackedFrame(20, {DetectCup(20)});
+  of_frame.request->frame = corrected(20, {});
+  EXPECT_TRUE(mapper.Process(of_frame, nullptr));
+  expect_corrected(20);
+}
+
 // The keypoints of the right half of the image are on a thing of a dynamic class.
 TEST_F(MapperLateMasksTest, LandmarksOnDynamicThingsAreRemovedWhenTheMasksCome) {
   mapper_->AwaitMasks(true);
@@ -565,6 +674,24 @@ TEST_F(MapperLateMasksTest, LandmarksOnDynamicThingsAreRemovedWhenTheMasksCome) 
       make_dynamic(OfTrackedFrame(5, {DetectCup(5)}), *world_.Observe(5).frame);
   EXPECT_TRUE(mapper_->Process(of_frame, nullptr));
   expect_static_only(FrameId(5), of_frame.dynamic_keypoints.size(), of_frame.keypoints);
+}
+
+// A frame that shows only a person, and so becomes no keyframe.
+TEST_F(MapperLateMasksTest, LandmarksOnDynamicThingsAreRemovedWithoutAKeyframe) {
+  mapper_->AwaitMasks(true);
+  ProcessFrame(0);
+  ProcessFrame(10);
+  LateDetections late = OfTrackedFrame(12, {});
+  for (uint32_t i = 0; i < late.keypoints; i += 2) {
+    late.dynamic_keypoints.push_back(i);
+  }
+  EXPECT_FALSE(mapper_->Process(late, nullptr));
+  for (size_t i = 0; i < late.request->landmarks.size(); ++i) {
+    const LandmarkId landmark = late.request->landmarks[i];
+    if (landmark.IsValid()) {
+      EXPECT_EQ(map().landmarks().Contains(landmark), i % 2 == 1) << i;
+    }
+  }
 }
 
 TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {

@@ -9,6 +9,19 @@
 
 namespace hullslam {
 
+// When a frame that shows things which are not mapped yet is made a keyframe because of them: there
+// must be no other keyframe within this time.
+struct ObjectRequestRule {
+  double time = 1.0 / 3.0;  // s
+  // Some detections can never be mapped. From this number of fruitless requests on, each further
+  // one doubles the time, up to the largest factor.
+  int patient_requests = 4;
+  double max_time_factor = 16.0;
+
+  // The time after so many fruitless requests, s.
+  double TimeAfter(int fruitless_requests) const;
+};
+
 // Counts the keyframes that were requested because of objects and led to no new mapped object.
 class RequestMemory {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/request_memory.h"
+#include "objects/request_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -37,6 +37,16 @@ TEST(RequestMemory, LooksAtEverySnapshot) {
   EXPECT_EQ(memory.CountFruitless(snapshot), 0);
   memory.AddRequest();
   EXPECT_EQ(memory.CountFruitless(snapshot), 1);
+}
+
+TEST(ObjectRequestRule, AsksMoreSeldomAfterSeveralFruitlessRequests) {
+  const ObjectRequestRule rule;
+  EXPECT_DOUBLE_EQ(rule.TimeAfter(0), 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(rule.TimeAfter(3), 1.0 / 3.0);
+  for (int fruitless = 4; fruitless < 8; ++fruitless) {
+    EXPECT_NEAR(rule.TimeAfter(fruitless), 2.0 * rule.TimeAfter(fruitless - 1), 1e-12);
+  }
+  EXPECT_NEAR(rule.TimeAfter(100), 16.0 / 3.0, 1e-12);
 }
 
 }  // namespace
