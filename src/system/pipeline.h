@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <vector>
@@ -28,6 +29,8 @@ class Pipeline {
   // See System::AwaitMasks and System::AddMasks. To be called by the thread of Track.
   virtual void AwaitMasks(bool is_on) = 0;
   virtual void AddDetections(LateDetections late) = 0;
+  // See Tracker::KeepIdsSince. To be called by the thread of Track.
+  virtual void KeepIdsSince(uint32_t revision) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
   // mapping has thrown an exception, its live map may be half edited. So mapping stops, all later
   // calls of Track and Finish throw the same exception, and map() stays the last published map.

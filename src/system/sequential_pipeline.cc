@@ -35,6 +35,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
 
   void AwaitMasks(bool is_on) override { mapper_.AwaitMasks(is_on); }
 
+  void KeepIdsSince(uint32_t revision) override { tracker_.KeepIdsSince(revision); }
+
   void AddDetections(LateDetections late) override {
     Check(!is_finished_, "AddMasks after Finish");
     RethrowFailure();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 #include <utility>
@@ -157,6 +158,7 @@ TrackedFrame System::Track(BuiltFrame built) {
   built.frame->id = FrameId(start_.map.NextFrame().value + static_cast<uint32_t>(frames_.size()));
   times_.Add("frame", built.milliseconds);
   mask_counts_.Add(built.masks);
+  pipeline_->KeepIdsSince(OldestRevision());
   const FrameReport report = [&] {
     const ScopedFlag flag(is_tracking_);
     return pipeline_->Track(std::move(built.frame));
@@ -169,7 +171,7 @@ TrackedFrame System::Track(BuiltFrame built) {
   frames_.push_back(report.tracked);
   KeepAwaiting(report, std::move(built.awaiting));
   if (!is_localization_only_ && options_.tracking.refine_at_end) {
-    remembered_.push_back(Remember(report, options_.objects));
+    remembered_.push_back(Remember(report, sensor_.camera, options_.objects));
     FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_.all());
   }
   if (frame_callback_) {
@@ -195,7 +197,8 @@ void System::KeepAwaiting(const FrameReport& report, std::shared_ptr<const Detec
       awaiting.request = KeyframeRequest{.frame = report.frame,
                                          .pose = *tracked.from_keyframe,
                                          .landmarks = report.landmarks,
-                                         .sightings = {}};
+                                         .sightings = {},
+                                         .oldest_revision = report.map_revision};
     }
   }
   std::erase_if(awaiting_, [&](const AwaitingFrame& former) {
@@ -214,6 +217,9 @@ bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
   frame_builder_->AddDetections(masks, *found->input, runner, built);
   CheckVectors(*built.frame);
   mask_counts_.Add(built.masks);
+  if (found->request) {
+    found->request->oldest_revision = 0;  // other requests say what may be forgotten
+  }
   pipeline_->AddDetections(
       {.frame = frame,
        .detections = std::move(built.frame->detections),
@@ -222,6 +228,21 @@ bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
        .request = std::move(found->request)});
   awaiting_.erase(found);
   return true;
+}
+
+// The revision of the oldest map whose ids are still kept here. Frames are kept in order, so it is
+// that of the first one of each kind.
+uint32_t System::OldestRevision() const {
+  uint32_t oldest = UINT32_MAX;
+  if (!remembered_.empty()) {
+    oldest = remembered_.front().map_revision;
+  }
+  for (const AwaitingFrame& awaiting : awaiting_) {
+    if (awaiting.request) {
+      return std::min(oldest, awaiting.request->oldest_revision);
+    }
+  }
+  return oldest;
 }
 
 void System::SetLocalizationOnly(bool is_on) {

@@ -63,6 +63,8 @@ class ThreadedPipeline final : public Pipeline {
 
   void AwaitMasks(bool is_on) override { mapper_.AwaitMasks(is_on); }
 
+  void KeepIdsSince(uint32_t revision) override { tracker_.KeepIdsSince(revision); }
+
   // The mailbox keeps the order, so the frame is a keyframe by then if it becomes one.
   void AddDetections(LateDetections late) override {
     Check(mapping_thread_.joinable(), "AddMasks after Finish");

@@ -18,10 +18,12 @@ constexpr size_t kMostLandmarks = 400;
 constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that were found
 
 // The detection with only the data that the residuals of the pose are computed from.
-Detection Slim(Detection detection, const ObjectOptions& options) {
+Detection Slim(Detection detection, const PinholeCamera& camera, const ObjectOptions& options) {
   if (TakesLines(options.pose.constraint.residual)) {
     detection.contour = {};
-    detection.hull = {};
+    if (!camera.IsFisheye()) {  // else ScaleToRaw needs the hull
+      detection.hull = {};
+    }
   }
   detection.embedding = {};
   detection.points = {};
@@ -86,8 +88,10 @@ TrackedFrame& FrameOf(const RememberedFrame& seen, std::span<TrackedFrame> frame
 
 }  // namespace
 
-RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options) {
+RememberedFrame Remember(const FrameReport& report, const PinholeCamera& camera,
+                         const ObjectOptions& options) {
   RememberedFrame remembered;
+  remembered.map_revision = report.map_revision;
   remembered.frame.id = report.tracked.frame;
   FrameFeatures& features = remembered.frame.features;
   const std::vector<uint32_t> found = Thin(IndicesOfValid(report.landmarks), kMostLandmarks);
@@ -104,7 +108,7 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
     remembered.frame.detections.reserve(seen.size());
     remembered.objects.reserve(seen.size());
     for (const uint32_t i : seen) {
-      remembered.frame.detections.push_back(Slim(report.frame->detections[i], options));
+      remembered.frame.detections.push_back(Slim(report.frame->detections[i], camera, options));
       remembered.objects.push_back(report.objects[i]);
     }
   }

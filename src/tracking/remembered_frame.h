@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <span>
 #include <vector>
@@ -15,16 +16,20 @@
 namespace hullslam {
 
 // The parts of a tracked frame that are kept to compute its pose again later: at most 400 keypoints
-// that showed a landmark, and the detections that showed a mapped object, without their contours.
-// They take about 8 kB, and 1 kB for each detection.
+// that showed a landmark, and the detections that showed a mapped object, without what the
+// residuals of the pose do not need, such as their contours. They take about 8 kB, and 1 kB for
+// each detection. While it is kept, the map must remember what has replaced its landmarks and
+// objects (Tracker::KeepIdsSince).
 struct RememberedFrame {
   Frame frame;                        // its features have only keypoints and right_u
   std::vector<LandmarkId> landmarks;  // one per keypoint
   std::vector<ObjectId> objects;      // one per detection
+  uint32_t map_revision = 0;          // as in FrameReport
 };
 
 // If too many landmarks were found, evenly chosen ones are kept.
-RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options);
+RememberedFrame Remember(const FrameReport& report, const PinholeCamera& camera,
+                         const ObjectOptions& options);
 
 // Gives tracked frames the poses that the final landmarks and objects explain best (RefinePose).
 // The pose of a frame was measured in the map at that time and follows one keyframe, its reference.

@@ -133,7 +133,9 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
   const bool has_map = map != nullptr && !map->keyframes().empty();
-  return has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
+  Result result = has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
+  result.report.map_revision = has_map ? map->revision() : 0;
+  return result;
 }
 
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
@@ -288,7 +290,9 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
   KeyframeEvidence evidence =
       GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
-  evidence.has_islands = Islands(map).size() > 1;
+  evidence.has_islands =
+      Islands(map).size() > 1 &&
+      join_requests_.MayAskAgain(map, sensor_, tracking.reference, tracking.estimate);
   evidence.fruitless_requests = object_requests_.CountFruitless(map);
   if (relocalised_at_) {
     evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;
@@ -298,6 +302,9 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   }
   if (policy_.NeedsKeyframeForObjects(evidence)) {
     object_requests_.AddRequest();
+  }
+  if (policy_.NeedsKeyframeForJoin(evidence)) {
+    join_requests_.Add(map, tracking.reference, tracking.estimate);
   }
   return true;
 }
@@ -368,7 +375,8 @@ KeyframeRequest Tracker::MakeRequest(std::shared_ptr<const Frame> frame,
           .pose = pose,
           .landmarks = tracking.estimate.landmarks,
           .sightings = sightings_.Take(),
-          .oldest_revision = std::exchange(first_sighting_revision_, std::nullopt).value_or(0)};
+          .oldest_revision = std::min(
+              kept_revision_, std::exchange(first_sighting_revision_, std::nullopt).value_or(0))};
 }
 
 }  // namespace hullslam

@@ -14,6 +14,7 @@
 #include "objects/request_memory.h"
 #include "tracking/confirmed_pose.h"
 #include "tracking/early_frames.h"
+#include "tracking/join_requests.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/monocular_initialiser.h"
@@ -41,6 +42,10 @@ class Tracker {
 
   // Whether no keyframe is requested from now on. If so, the next frame must come with a map.
   void LocaliseOnly(bool is_localizing_only = true) { is_localizing_only_ = is_localizing_only; }
+
+  // Requests tell the mapper to remember which ids have replaced those of snapshots from this
+  // revision on (KeyframeRequest::oldest_revision), also if they do not need it themselves.
+  void KeepIdsSince(uint32_t revision) { kept_revision_ = revision; }
 
   struct Result {
     FrameReport report;
@@ -113,7 +118,9 @@ class Tracker {
   SightingCounter sightings_;  // since the last request
   // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
+  uint32_t kept_revision_ = UINT32_MAX;  // see KeepIdsSince
   RequestMemory object_requests_;
+  JoinRequests join_requests_;
   ObjectIndex object_index_;  // index of the map of the last frame
 };
 

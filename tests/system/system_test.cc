@@ -664,6 +664,68 @@ TEST_P(SystemTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
   EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
 }
 
+// Nothing of the run before may be left: neither frames that await masks nor counts.
+TEST_P(SystemTest, ResetForgetsAllThatTheRunHasLeft) {
+  const auto run = [&](System& system) {
+    system.AwaitMasks(true);
+    for (int i = 0; i < 12; ++i) {
+      TrackFrame(system, i);
+      if (i % 4 == 0) {
+        EXPECT_TRUE(system.AddMasks(FrameId(static_cast<uint32_t>(i)), SquareMask()));
+      }
+    }
+  };
+  System fresh(Wall::Options(), GetParam());
+  run(fresh);
+  fresh.Finish();
+  System system(Wall::Options(), GetParam());
+  run(system);
+  system.Reset();
+  EXPECT_TRUE(system.frames().empty());
+  EXPECT_EQ(system.map(), nullptr);
+  EXPECT_TRUE(system.times().samples().empty());
+  for (uint32_t id = 0; id < 12; ++id) {
+    EXPECT_FALSE(system.AddMasks(FrameId(id), SquareMask())) << "frame " << id << " of before";
+  }
+  run(system);
+  system.Finish();
+  EXPECT_EQ(system.object_counts().frames_with_masks, fresh.object_counts().frames_with_masks);
+  EXPECT_EQ(system.object_counts().detections, fresh.object_counts().detections);
+  EXPECT_EQ(system.times().samples().at("frame").size(), 12u);
+  ASSERT_EQ(system.frames().size(), fresh.frames().size());
+  EXPECT_EQ(system.frames().front().frame, FrameId(0));
+}
+
+// Frames of the last minutes get their last pose at the end, from landmarks of those days. So until
+// then the map knows what has replaced them: the same as if each step had been followed.
+TEST(System, TheMapKnowsWhatReplacedTheLandmarksOfRememberedFrames) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  std::vector<LandmarkId> ids;       // as tracking reported them
+  std::vector<LandmarkId> followed;  // brought up to date after each frame
+  std::vector<LandmarkId> reported;
+  system.SetFrameCallback([&](const FrameReport& report) { reported = report.landmarks; });
+  for (int i = 0; i < 80; ++i) {
+    system.Track(Time(i), TheWall().Photograph(i % 40), Wall::Depth(i % 40));
+    for (const LandmarkId id : reported) {
+      if (id.IsValid()) {
+        ids.push_back(id);
+        followed.push_back(id);
+      }
+    }
+    const auto map = system.map();
+    for (LandmarkId& id : followed) {
+      id = map->Resolve(id);
+    }
+  }
+  const auto map = system.map();
+  size_t replaced = 0;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    ASSERT_EQ(map->Resolve(ids[i]), followed[i]) << i;
+    replaced += followed[i].IsValid() && followed[i] != ids[i] ? 1 : 0;
+  }
+  EXPECT_GT(replaced, 100u) << "too few landmarks were replaced for a test";
+}
+
 TEST(System, MasksMayComeTwoSecondsLate) {
   System system(Wall::Options(), PipelineKind::kSequential);
   const auto track = [&](double timestamp, int index) {

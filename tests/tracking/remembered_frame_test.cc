@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <list>
 #include <memory>
 #include <utility>
@@ -11,6 +12,8 @@
 
 #include "map/spanning_tree.h"
 #include "objects/made_objects.h"
+#include "objects/raw_lines.h"
+#include "support/fisheye_camera.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -51,7 +54,8 @@ class RefinePosesTest : public ::testing::Test {
     std::vector<TrackedFrame> frames(1);
     frames[0].frame = FrameId(4);  // ids need not begin with 0
     frames.push_back(report_.tracked);
-    const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
+    const std::list<RememberedFrame> remembered = {
+        Remember(report_, world_->sensor().camera, objects_)};
     Refine(remembered, frames);
     EXPECT_FALSE(frames[0].from_keyframe.has_value());
     EXPECT_EQ(frames[1].from_keyframe->reference, KeyframeId(0));
@@ -116,7 +120,7 @@ class RefinePosesTest : public ::testing::Test {
 
 TEST_F(RefinePosesTest, RemembersTheLandmarksThatWereFound) {
   report_.landmarks[0] = LandmarkId();
-  const RememberedFrame remembered = Remember(report_, objects_);
+  const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
   EXPECT_EQ(remembered.frame.id, FrameId(5));
   EXPECT_EQ(remembered.landmarks, Seen());
   const FrameFeatures& all = report_.frame->features;
@@ -130,7 +134,7 @@ TEST_F(RefinePosesTest, RemembersTheLandmarksThatWereFound) {
 TEST_F(RefinePosesTest, RemembersAtMost400Landmarks) {
   Make({.points = 1500});
   ASSERT_GT(Seen().size(), 400u);
-  const RememberedFrame remembered = Remember(report_, objects_);
+  const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
   EXPECT_EQ(remembered.landmarks.size(), 400u);
   EXPECT_EQ(remembered.landmarks.front(), Seen().front());
   Track(wrong_);
@@ -212,7 +216,7 @@ TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   auto frame = std::make_shared<Frame>(*report_.frame);
   frame->detections[1].embedding = {0.6f, 0.8f};
   report_.frame = frame;
-  const RememberedFrame remembered = Remember(report_, objects_);
+  const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
   ASSERT_EQ(remembered.frame.detections.size(), 3u);
   EXPECT_EQ(remembered.objects.size(), 3u);
   const Detection& seen = report_.frame->detections[1];
@@ -224,9 +228,37 @@ TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   EXPECT_TRUE(kept.embedding.empty());
   ObjectOptions options;
   options.pose.constraint.residual = ObjectResidual::kAlgebraicPoint;  // needs the contour
-  EXPECT_FALSE(Remember(report_, options).frame.detections[1].contour.empty());
+  EXPECT_FALSE(
+      Remember(report_, world_->sensor().camera, options).frame.detections[1].contour.empty());
   options.joint_pose = false;
-  EXPECT_TRUE(Remember(report_, options).frame.detections.empty());
+  EXPECT_TRUE(Remember(report_, world_->sensor().camera, options).frame.detections.empty());
+}
+
+// The lines of a fisheye lens count in pixels of the raw image, which follow from where they touch
+// the hull.
+TEST(RememberedFrame, HasTheLinesOfTheFrameInTheRawImage) {
+  for (const PinholeCamera& camera : {SyntheticSensor().camera, FisheyeCamera()}) {
+    Sensor sensor = SyntheticSensor();
+    sensor.camera = camera;
+    auto frame = std::make_shared<Frame>();
+    frame->detections = {
+        Detect(MakeObject("cup", {1.4, -0.8, 1.5}, {0.25, 0.15, 0.2}), sensor, Rigid3())};
+    FrameReport report;
+    report.frame = frame;
+    report.objects = {ObjectId(0)};
+    const RememberedFrame remembered = Remember(report, camera, ObjectOptions());
+    ASSERT_EQ(remembered.frame.detections.size(), 1u);
+    const auto raw_lines = [&](const Detection& detection) {
+      return ScaleToRaw(camera, detection, detection.lines);
+    };
+    const std::vector<SilhouetteLine> expected = raw_lines(frame->detections[0]);
+    const std::vector<SilhouetteLine> lines = raw_lines(remembered.frame.detections[0]);
+    ASSERT_EQ(lines.size(), expected.size());
+    for (size_t i = 0; i < lines.size(); ++i) {
+      EXPECT_EQ(lines[i].line.Homogeneous(), expected[i].line.Homogeneous());
+    }
+    EXPECT_NE(camera.IsFisheye(), std::abs(lines[0].line.normal.norm() - 1.0) < 0.1);
+  }
 }
 
 // An object counts as five landmarks.
@@ -255,7 +287,8 @@ TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
   made_.map.CullKeyframe(culled);
   ASSERT_EQ(made_.map.KeyframeOfFrame(report_.tracked.frame), culled);
   std::vector<TrackedFrame> frames = {report_.tracked};
-  const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
+  const std::list<RememberedFrame> remembered = {
+      Remember(report_, world_->sensor().camera, objects_)};
   Refine(remembered, frames);
   ASSERT_EQ(frames[0].from_keyframe->reference, culled);
   EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
@@ -263,7 +296,7 @@ TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
   // Without enough landmarks it keeps the pose of the keyframe and not that of tracking.
   ForgetLandmarksAfter(29);
   frames = {report_.tracked};
-  Refine({Remember(report_, objects_)}, frames);
+  Refine({Remember(report_, world_->sensor().camera, objects_)}, frames);
   EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), wrong_), 1e-12);
 }
 
@@ -271,7 +304,7 @@ TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
   Track(wrong_);
   std::vector<TrackedFrame> frames(2, report_.tracked);
   frames[1].frame = FrameId(6);
-  std::list<RememberedFrame> remembered(2, Remember(report_, objects_));
+  std::list<RememberedFrame> remembered(2, Remember(report_, world_->sensor().camera, objects_));
   remembered.back().frame.id = FrameId(6);
   Cancellation cancellation;
   std::vector<int> progress;
@@ -300,7 +333,7 @@ TEST_F(RefinePosesTest, TheOldestFramesAreRefinedAndForgotten) {
   for (uint32_t i = 0; i < 8; ++i) {
     report_.tracked.frame = FrameId(20 + i);
     frames.push_back(report_.tracked);
-    remembered.push_back(Remember(report_, objects_));
+    remembered.push_back(Remember(report_, world_->sensor().camera, objects_));
     RefineOldest(made_.map, context, kMost, remembered, frames);
     ASSERT_EQ(remembered.size(), std::min<size_t>(i + 1, kMost));
     EXPECT_EQ(remembered.back().frame.id, report_.tracked.frame);
@@ -317,7 +350,8 @@ TEST_F(RefinePosesTest, TheOldestFramesAreRefinedAndForgotten) {
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {
   report_.tracked.from_keyframe.reset();
   std::vector<TrackedFrame> frames = {report_.tracked};
-  const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
+  const std::list<RememberedFrame> remembered = {
+      Remember(report_, world_->sensor().camera, objects_)};
   Refine(remembered, frames);
   EXPECT_FALSE(frames[0].from_keyframe.has_value());
 }

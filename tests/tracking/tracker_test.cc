@@ -609,6 +609,25 @@ TEST_F(TrackerTest, ARequestNamesTheOldestSnapshotOfItsIds) {
   EXPECT_EQ(RequestOf(third)->oldest_revision, newest);
 }
 
+// Others may need replacements of older ids, for example frames that are remembered.
+TEST_F(TrackerTest, ARequestNamesTheOldestRevisionThatOthersNeed) {
+  Begin();
+  const uint32_t oldest = map_->revision();
+  tracker_.KeepIdsSince(oldest);
+  for (uint32_t i = 1; i < 4; ++i) {
+    map_ = Publish(made_.map);
+    const Tracker::Result result = Process(DemandingFrame(i));
+    ASSERT_TRUE(result.message);
+    EXPECT_EQ(RequestOf(result)->oldest_revision, oldest);
+    EXPECT_EQ(result.report.map_revision, map_->revision());
+  }
+  tracker_.KeepIdsSince(map_->revision() + 5);
+  map_ = Publish(made_.map);
+  const Tracker::Result result = Process(DemandingFrame(4));
+  ASSERT_TRUE(result.message);
+  EXPECT_EQ(RequestOf(result)->oldest_revision, map_->revision());
+}
+
 TEST(Tracker, SameFramesGiveTheSameBits) {
   const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10});
   SyntheticMap made = MakeSyntheticMap(world, {0, 8, 16});
@@ -1428,6 +1447,42 @@ TEST_F(LostDepthTracker, WaitsForSeveralFramesIfThereAreFewPerSecond) {
     const bool begins = Process(frame).message.has_value();
     EXPECT_EQ(begins, i == 6) << i;
   }
+}
+
+TEST_F(LostDepthTracker, CountsLostFramesAnewAfterTheCameraWasFound) {
+  Begin();
+  TrackFrames(1, 3);
+  for (uint32_t i = 4; i < 10; ++i) {
+    const bool is_known = i == 6;
+    auto frame = std::make_shared<Frame>(*(is_known ? world_ : other_).Observe(i).frame);
+    frame->timestamp = i;
+    const Tracker::Result result = Process(frame);
+    EXPECT_EQ(result.message.has_value(), i == 9) << i;
+    EXPECT_EQ(result.report.tracked.state == TrackingState::kTracked, is_known || i == 9) << i;
+  }
+}
+
+// Only place recognition can join the island to the other one, and it has seen this view.
+TEST_F(LostDepthTracker, ACameraThatStandsStillAsksForFewKeyframesToJoinItsIsland) {
+  Begin();
+  TrackFrames(1, 3);
+  ASSERT_TRUE(LoseUntilIsland(4));
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, world_.sensor(), created);
+  map_ = Publish(made_.map);
+  const uint32_t begin = island_.views.front().frame->id.value;
+  const std::shared_ptr<const Frame> view = other_.Observe(begin).frame;
+  int requests = 0;
+  for (uint32_t i = begin + 1; i < begin + 400; ++i) {
+    auto frame = std::make_shared<Frame>(*view);
+    frame->id = FrameId(i);
+    frame->timestamp = i / world_.sensor().frames_per_second;
+    const Tracker::Result result = Process(frame);
+    ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+    requests += result.message ? 1 : 0;
+  }
+  EXPECT_GE(requests, 2) << "a join needs two keyframes";
+  EXPECT_LE(requests, 4) << "40 if one were requested every third of a second";
 }
 
 TEST_F(LostDepthTracker, WithLocalizationOnlyNoIslandIsBegun) {

@@ -54,8 +54,8 @@ struct KeyframeRequest {
   RelativePose pose;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<Sighting> sightings;    // one per landmark
-  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests do not
-  // refer to older snapshots, so the mapper forgets older replacements.
+  // Map::revision() of the oldest snapshot whose ids somebody may still ask for: this request, or
+  // frames that are remembered. So the mapper forgets older replacements.
   uint32_t oldest_revision = 0;
 };
 
@@ -99,8 +99,9 @@ struct MapCorrection {
   std::optional<LoopEdge> loop;
 };
 
-// The detections of a frame whose masks came after it was tracked. If a keyframe was made of the
-// frame, it gets them; else a keyframe is made of it if it shows objects.
+// The detections of a frame whose masks came after it was tracked, in the image as read (a rolling
+// shutter is not corrected). If a keyframe was made of the frame, it gets them; else a keyframe is
+// made of it if the map needs it to know an object (mapping/late_detections.h).
 struct LateDetections {
   FrameId frame;
   std::vector<Detection> detections;
@@ -155,6 +156,7 @@ struct FrameReport {
   std::shared_ptr<const Frame> frame;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<ObjectId> objects;      // one per detection; invalid where it shows no mapped object
+  uint32_t map_revision = 0;          // Map::revision() of the snapshot that the ids are of
   // The reason why a monocular camera has no map yet; absent once there is a map.
   std::optional<InitialisationFailure> failure = std::nullopt;
   // The reason why the frame is lost; absent unless its state is kLost.

@@ -179,6 +179,7 @@ class System {
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
   void KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input);
+  uint32_t OldestRevision() const;
   void CheckStamp(double timestamp) const;
   void CheckVectors(const Frame& frame);
 
