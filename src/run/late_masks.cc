@@ -11,11 +11,9 @@ LateMasks::LateMasks(Pace pace, const NetworkMasks& network, System& system)
     : pace_(pace), network_(network), system_(system) {
   system_.AwaitMasks(true);
   if (pace_ == Pace::kNeverWait) {
-    worker_ = std::make_unique<LatestWorker<Picture>>([this](const Picture& picture) {
+    worker_ = std::make_unique<LatestMaker<Picture, Made>>([this](const Picture& picture) {
       RunInBackground();  // tracking comes first
-      auto masks = network_.Make(picture.image);
-      const std::lock_guard lock(mutex_);
-      made_ = masks ? std::optional(Made{picture.frame, *std::move(masks)}) : std::nullopt;
+      return Made{picture.frame, network_.Make(picture.image)};
     });
   }
 }
@@ -58,14 +56,8 @@ bool LateMasks::IsKeyframe(FrameId frame) const {
 }
 
 void LateMasks::AddMade() {
-  worker_->RethrowFailure();
-  std::optional<Made> made;
-  {
-    const std::lock_guard lock(mutex_);
-    made = std::exchange(made_, std::nullopt);
-  }
-  if (made) {
-    system_.AddMasks(made->frame, std::move(made->masks));
+  for (Made& made : worker_->TakeResults()) {
+    system_.AddMasks(made.frame, std::move(made.masks));
   }
 }
 

@@ -3,14 +3,12 @@
 
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <opencv2/core/mat.hpp>
-#include <optional>
 #include <vector>
 
 #include "hullslam/system/system.h"
 #include "run/network_masks.h"
-#include "util/latest_worker.h"
+#include "util/latest_maker.h"
 
 namespace hullslam {
 
@@ -52,9 +50,7 @@ class LateMasks {
   const NetworkMasks& network_;
   System& system_;
   std::deque<Picture> pictures_;  // of the frames that may still get masks
-  std::mutex mutex_;              // guards made_
-  std::optional<Made> made_;
-  std::unique_ptr<LatestWorker<Picture>> worker_;  // last, because its thread uses the others
+  std::unique_ptr<LatestMaker<Picture, Made>> worker_;
 };
 
 }  // namespace hullslam

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -39,6 +41,64 @@ TEST(CornerSigma, OfARotationDoesNotDependOnTheDepth) {
 TEST(CornerSigma, DoesNotDependOnTheUnitOfLength) {
   EXPECT_NEAR(CornerSigma(kMadeCamera, Information(0.003, 0.02), 2.0),
               CornerSigma(kMadeCamera, Information(0.003, 0.06), 6.0), 1e-9);
+}
+
+// A pose that turns about one side of the image is uncertain at the other side, whichever it is.
+// The translation that belongs to the turn keeps points at the depth 2 and the slope `side` in
+// place.
+TEST(CornerSigma, IsThatOfTheWorstCornerOnEverySide) {
+  const auto sigma_about = [](const Eigen::Vector2d& side) {
+    Matrix6d covariance = 1e-8 * Matrix6d::Identity();
+    Eigen::Matrix<double, 6, 1> turn;  // about the axis across the side
+    turn.head<3>() << side.y(), -side.x(), 0.0;
+    turn.head<3>().normalize();
+    const Eigen::Vector3d fixed(2.0 * side.x(), 2.0 * side.y(), 2.0);
+    turn.tail<3>() = -turn.head<3>().cross(fixed);
+    covariance += 1e-4 * turn * turn.transpose();
+    return CornerSigma(kMadeCamera, covariance.inverse(), 2.0);
+  };
+  const double left = sigma_about({-0.64, 0.0});
+  EXPECT_GT(left, 5.0);
+  EXPECT_NEAR(sigma_about({0.64, 0.0}), left, 1e-6);
+  const double top = sigma_about({0.0, -0.48});
+  EXPECT_GT(top, 3.0);
+  EXPECT_NEAR(sigma_about({0.0, 0.48}), top, 1e-6);
+}
+
+// A turn about the axis of the lens moves the corner of the raw image along a circle of its radius.
+TEST(CornerSigma, IsMeasuredInTheRawImageOfAFisheyeLens) {
+  PinholeCamera camera = FisheyeCamera();
+  camera.cx = 320.0;
+  camera.cy = 240.0;
+  camera.fy = camera.fx;
+  Matrix6d information = Information(1e-9, 1e-9);
+  information(2, 2) = 1.0 / (0.01 * 0.01);
+  // The lens has 150 degrees across: the corners, beyond 80 degrees, are not seen.
+  const double radius =
+      (camera.Distort(camera.Undistort({0.0, 0.0})) - Eigen::Vector2d(camera.cx, camera.cy)).norm();
+  EXPECT_LT(radius, 399.0);
+  EXPECT_NEAR(CornerSigma(camera, information, 2.0), 0.01 * radius, 1e-3);
+}
+
+// The same lens in the model of a pinhole and in that of a fisheye.
+TEST(CornerSigma, DoesNotDependOnTheModelOfTheLens) {
+  PinholeCamera pinhole = PinholeAsFisheye();
+  pinhole.lens = LensModel::kBrown;
+  pinhole.k1 = pinhole.k2 = pinhole.k3 = pinhole.k4 = 0.0;
+  const Matrix6d information = Information(0.003, 0.02);
+  const double expected = CornerSigma(pinhole, information, 2.0);
+  EXPECT_NEAR(CornerSigma(PinholeAsFisheye(), information, 2.0), expected, 0.01 * expected);
+}
+
+// The corners are those of the raw image, whose undistorted ones are farther out with this lens.
+TEST(CornerSigma, TakesTheCornersOfTheRawImage) {
+  PinholeCamera barrel = kMadeCamera;
+  barrel.k1 = -0.2;
+  const Eigen::Vector2d corner = barrel.Undistort({0.0, 0.0});
+  const double slope = (corner - Eigen::Vector2d(320.0, 240.0)).norm() / 500.0;
+  ASSERT_GT(slope, 0.85);
+  EXPECT_NEAR(CornerSigma(barrel, Information(0.01, 1e-9), 2.0),
+              0.01 * 500.0 * (1.0 + slope * slope), 1e-6);
 }
 
 TEST(CornerSigma, IsInfiniteForAPoseThatIsNotDetermined) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "support/made_network.h"
@@ -75,6 +77,26 @@ TEST_F(LateMasksTest, AKeyframeThatTheNetworkFailsOnGoesOnAwaitingMasks) {
     EXPECT_EQ(DetectionsOfFirstKeyframe(), 1U);
   }
   EXPECT_EQ(network_.work().failures, 2U);
+}
+
+// Masks that come more than two seconds late are of no use.
+TEST_F(LateMasksTest, PicturesAreForgottenAfterTwoSeconds) {
+  LateMasks masks(LateMasks::Pace::kNeverWait, network_, system_);
+  const auto add = [&](uint32_t number, double timestamp, const cv::Mat& image) {
+    TrackedFrame frame;  // no keyframe, so its picture waits
+    frame.frame = FrameId(number);
+    frame.timestamp = timestamp;
+    masks.AfterFrame(frame, image);
+  };
+  std::vector<cv::Mat> images;
+  for (uint32_t i = 0; i < 40; ++i) {
+    images.push_back(colour_.clone());
+    add(100 + i, 0.125 * i, images.back());
+  }
+  for (size_t i = 0; i < images.size(); ++i) {
+    const bool is_kept = images[i].u->refcount > 1;
+    EXPECT_EQ(is_kept, i >= 23) << i;  // the last one came at 4.875 s
+  }
 }
 
 }  // namespace
