@@ -212,6 +212,28 @@ TEST(KeyframeInsertion, EachPartOfTheImageGetsItsShareOfLandmarks) {
   }
 }
 
+// A part that the map knows well needs no more landmarks; others may.
+TEST(KeyframeInsertion, KnownLandmarksCountForTheShareOfTheirPart) {
+  const SyntheticWorld world({.points = 1500});
+  SyntheticMap made = MakeSyntheticMap(world, {9, 10});
+  const SyntheticView view = world.Observe(11);
+  Sensor sensor = world.sensor();
+  sensor.close_depth = 0.0;  // all are far
+  KeyframeRequest request = Request(made, view, 11, KeyframeId(1));
+  for (size_t i = 0; i < request.landmarks.size(); i += 2) {
+    request.landmarks[i] = LandmarkId();
+  }
+  Map copy = made.map.Snapshot();
+  std::vector<LandmarkId> beside_known;
+  InsertKeyframe(copy, request, sensor, beside_known);
+  request.landmarks.assign(view.points.size(), LandmarkId());
+  std::vector<LandmarkId> all;
+  InsertKeyframe(made.map, request, sensor, all);
+  ASSERT_GT(all.size(), 100u);
+  EXPECT_LT(beside_known.size(), 0.65 * all.size()) << "every second one is known";
+  EXPECT_GT(beside_known.size(), 0.35 * all.size());
+}
+
 TEST(KeyframeInsertion, KnownLandmarksAreObservedAndNotMadeAgain) {
   const SyntheticWorld world;
   SyntheticMap made = MakeSyntheticMap(world, {0, 5});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,21 @@ TEST_F(KnownPoseMapperTest, MapsFromMasksAlone) {
 TEST_F(KnownPoseMapperTest, DepthIsUsedWhereItIsGiven) {
   KnownPoseMapper mapper(options_);
   AddCircle(mapper, 0.2, true);
+  ExpectTable(mapper.map(), 0.02);
+  for (const auto& [id, keyframe] : mapper.map().keyframes()) {
+    EXPECT_FALSE(keyframe.frame->detections.at(0).points.empty());
+  }
+}
+
+// As the depth images of a phone are.
+TEST_F(KnownPoseMapperTest, DepthOfAnotherSizeIsFitted) {
+  KnownPoseMapper mapper(options_);
+  for (int i = 0; i < 12; ++i) {
+    const Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 1.2, 0.7);
+    cv::Mat small;
+    cv::resize(DepthFrom(cam_from_world), small, {320, 240}, 0.0, 0.0, cv::INTER_NEAREST);
+    mapper.AddView(0.5 * i, Inverse(cam_from_world), MasksFrom(cam_from_world), small);
+  }
   ExpectTable(mapper.map(), 0.02);
   for (const auto& [id, keyframe] : mapper.map().keyframes()) {
     EXPECT_FALSE(keyframe.frame->detections.at(0).points.empty());
