@@ -370,7 +370,10 @@ class System:
     def __init__(self, settings: SettingsTable, mode: Literal["rgbd", "mono"] = "rgbd", *,
                  pipeline: Literal["sequential", "threaded", "realtime"] = "sequential",
                  vocabulary: _Path | None = "default", map: _Path | None = None,
-                 session: str = "", localization: bool = False, seed: int = 0) -> None:
+                 session: str = "", localization: bool = False, seed: int = 0,
+                 mask_all: npt.NDArray[np.bool_] | npt.NDArray[np.uint8] | None = None,
+                 mask_all_right: npt.NDArray[np.bool_] | npt.NDArray[np.uint8] | None = None
+                 ) -> None:
         """settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for
         a rectified pair of cameras, whose left one the settings describe with Camera.bf.
         pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of
@@ -380,6 +383,8 @@ class System:
         map: path of a map of earlier runs to go on with. session: the name of this run in
         the map. localization: True to find poses in `map` without changing it.
         seed: seed of all random choices.
+        mask_all, mask_all_right: (height, width) bool or uint8, or None: pixels that are 0
+        are ignored in all images, or in all right images of a stereo camera.
         """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
               right: _Image | None = None, masks_right: Masks | None = None,
@@ -405,8 +410,9 @@ class System:
         """
     def add_masks(self, frame: int, masks: Masks) -> bool:
         """Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at
-        most 2 s of time stamps later. If they show an object, it becomes a keyframe unless it
-        is one. Returns False for a frame that awaits no masks (any more).
+        most 2 s of time stamps later. If they show an object that is not mapped and no keyframe
+        with masks is near in time, it becomes a keyframe unless it is one. Returns False for a
+        frame that awaits no masks (any more).
         """
     def finish(self) -> None:
         """Waits until all keyframes are in the map, adjusts the whole map, and computes the

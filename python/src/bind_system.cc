@@ -47,18 +47,32 @@ SystemStart MakeStart(const SystemOptions& options, const std::optional<fs::path
   return start;
 }
 
+// One mask for all images, as SystemOptions::mask_all; None: empty.
+cv::Mat MaskOfAll(const py::object& pixels, const std::string& name, const PinholeCamera& camera) {
+  if (pixels.is_none()) {
+    return {};
+  }
+  return PlaneOf(pixels, name, {"bool", "uint8"}, {camera.width, camera.height}).image.clone();
+}
+
 std::unique_ptr<LiveSystem> MakeSystem(const SettingsTable& settings, const std::string& mode,
                                        const std::string& pipeline,
                                        const std::optional<fs::path>& vocabulary,
                                        const std::optional<fs::path>& map,
-                                       const std::string& session, bool localization,
-                                       uint64_t seed) {
+                                       const std::string& session, bool localization, uint64_t seed,
+                                       const py::object& mask_all,
+                                       const py::object& mask_all_right) {
+  const PinholeCamera& camera = settings.options.camera;
+  const cv::Mat mask = MaskOfAll(mask_all, "mask_all", camera);
+  const cv::Mat right_mask = MaskOfAll(mask_all_right, "mask_all_right", camera);
   const auto kind = Choose<PipelineKind>("pipeline", pipeline,
                                          {{"sequential", PipelineKind::kSequential},
                                           {"threaded", PipelineKind::kThreaded},
                                           {"realtime", PipelineKind::kRealtime}});
   return WithoutGil([&] {
-    const SystemOptions options = OptionsOf(settings, mode, vocabulary, seed);
+    SystemOptions options = OptionsOf(settings, mode, vocabulary, seed);
+    options.mask_all = mask;
+    options.mask_all_right = right_mask;
     return std::make_unique<LiveSystem>(options, kind,
                                         MakeStart(options, map, session, localization));
   });
@@ -203,7 +217,8 @@ void BindSystem(py::module_& module) {
       .def(py::init(&MakeSystem), py::arg("settings"), py::arg("mode") = "rgbd", py::kw_only(),
            py::arg("pipeline") = "sequential", py::arg("vocabulary") = fs::path("default"),
            py::arg("map") = py::none(), py::arg("session") = "", py::arg("localization") = false,
-           py::arg("seed") = 0,
+           py::arg("seed") = 0, py::arg("mask_all") = py::none(),
+           py::arg("mask_all_right") = py::none(),
            "settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for\n"
            "a rectified pair of cameras, whose left one the settings describe with Camera.bf.\n"
            "pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of\n"
@@ -212,7 +227,9 @@ void BindSystem(py::module_& module) {
            "'default': the one that comes with HullSLAM; None: none.\n"
            "map: path of a map of earlier runs to go on with. session: the name of this run in\n"
            "the map. localization: True to find poses in `map` without changing it.\n"
-           "seed: seed of all random choices.")
+           "seed: seed of all random choices.\n"
+           "mask_all, mask_all_right: (height, width) bool or uint8, or None: pixels that are 0\n"
+           "are ignored in all images, or in all right images of a stereo camera.")
       .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
            py::arg("masks") = py::none(), py::kw_only(), py::arg("right") = py::none(),
            py::arg("masks_right") = py::none(), py::arg("timestamp"),
@@ -235,11 +252,13 @@ void BindSystem(py::module_& module) {
           "From now on, frames that are tracked without masks await those of add_masks(): a\n"
           "keyframe of such a frame says nothing about objects until then. reset() switches\n"
           "this off.")
-      .def(
-          "add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
-          "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
-          "most 2 s of time stamps later. If they show an object, it becomes a keyframe unless it\n"
-          "is one. Returns False for a frame that awaits no masks (any more).")
+      .def("add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
+           "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
+           "most 2 s of time stamps later. If they show an object that is not mapped and no "
+           "keyframe\n"
+           "with masks is near in time, it becomes a keyframe unless it is one. Returns False for "
+           "a\n"
+           "frame that awaits no masks (any more).")
       .def("finish", &Finish,
            "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
            "poses of all frames again. Ctrl+C ends it early.")

@@ -181,7 +181,8 @@ CornerDetector::CornerDetector(int initial_threshold, int minimum_threshold)
   Check(minimum_threshold >= 1 && minimum_threshold <= 255, "the FAST threshold is not 1 to 255");
 }
 
-void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner>& corners) {
+void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner>& corners,
+                            const std::function<bool(const Corner&)>& is_ignored) {
   Check(image.type() == CV_8UC1, "the image is not CV_8UC1");
   Check(border >= kSmallestBorder, "the border is narrower than 8 px");
   corners.clear();
@@ -189,6 +190,9 @@ void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner
     return;
   }
   FindMaxima(image, border, corners);
+  if (is_ignored) {
+    std::erase_if(corners, is_ignored);
+  }
   DropWeakInStrongCells(image, corners);
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -33,8 +34,10 @@ class CornerDetector {
   CornerDetector(int initial_threshold, int minimum_threshold);
 
   // Finds the corners that are at least `border` px (8 or more) away from the outermost pixels of
-  // `image` (CV_8UC1), in raster order. `corners` is overwritten.
-  void Detect(const cv::Mat& image, int border, std::vector<Corner>& corners);
+  // `image` (CV_8UC1), in raster order. `corners` is overwritten. The result is as if there were no
+  // corners where `is_ignored` (which may be empty) is true.
+  void Detect(const cv::Mat& image, int border, std::vector<Corner>& corners,
+              const std::function<bool(const Corner&)>& is_ignored = {});
 
  private:
   void FindMaxima(const cv::Mat& image, int border, std::vector<Corner>& corners);

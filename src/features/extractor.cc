@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "features/blur.h"
 #include "features/corners.h"
@@ -47,10 +48,11 @@ class LevelExtractor {
         keep_edges_(options.keep_edges),
         detector_(options.initial_fast_threshold, options.minimum_fast_threshold) {}
 
-  void Extract(const ImagePyramid& pyramid);
+  void Extract(const ImagePyramid& pyramid, const cv::Mat& ignored);
   const ExtractedFeatures& features() const { return features_; }
 
  private:
+  Eigen::Vector2f PositionOf(const Corner& corner, const ImagePyramid& pyramid) const;
   void Select(const cv::Mat& image);
   void Describe(const Corner& corner, const ImagePyramid& pyramid, const cv::Mat& blurred);
 
@@ -67,11 +69,17 @@ class LevelExtractor {
   ExtractedFeatures features_;
 };
 
-void LevelExtractor::Extract(const ImagePyramid& pyramid) {
+void LevelExtractor::Extract(const ImagePyramid& pyramid, const cv::Mat& ignored) {
   features_.keypoints.clear();
   features_.descriptors.clear();
   const cv::Mat& image = pyramid.level(level_);
-  detector_.Detect(image, kPatchReach, corners_);
+  std::function<bool(const Corner&)> is_ignored;
+  if (!ignored.empty()) {
+    is_ignored = [&](const Corner& corner) {
+      return IsIgnored(ignored, PositionOf(corner, pyramid));
+    };
+  }
+  detector_.Detect(image, kPatchReach, corners_, is_ignored);
   Select(image);
   if (selected_.empty()) {
     return;
@@ -80,6 +88,16 @@ void LevelExtractor::Extract(const ImagePyramid& pyramid) {
   for (const Corner& corner : selected_) {
     Describe(corner, pyramid, blurred);
   }
+}
+
+// The position of a corner in the raw image.
+Eigen::Vector2f LevelExtractor::PositionOf(const Corner& corner,
+                                           const ImagePyramid& pyramid) const {
+  Eigen::Vector2f position(corner.x, corner.y);
+  if (subpixel_) {
+    position += SubpixelOffset(corner);
+  }
+  return pyramid.ToLevelZero(position, level_);
 }
 
 // Corners on straight edges are left out, unless the others are fewer than half of the features
@@ -109,11 +127,7 @@ void LevelExtractor::Describe(const Corner& corner, const ImagePyramid& pyramid,
   const cv::Point center(corner.x, corner.y);
   const Orientation orientation = ComputeOrientation(pyramid.level(level_), center);
   RawKeypoint keypoint;
-  Eigen::Vector2f position(corner.x, corner.y);
-  if (subpixel_) {
-    position += SubpixelOffset(corner);
-  }
-  keypoint.raw = pyramid.ToLevelZero(position, level_);
+  keypoint.raw = PositionOf(corner, pyramid);
   keypoint.angle = orientation.Angle();
   keypoint.response = corner.score;
   keypoint.level = level_;
@@ -138,13 +152,20 @@ ExtractedFeatures Join(const std::vector<LevelExtractor>& levels) {
   return all;
 }
 
-void CheckImage(const cv::Mat& grey) {
+void CheckImage(const cv::Mat& grey, const cv::Mat& ignored) {
   Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
+  Check(ignored.empty() || (ignored.type() == CV_8UC1 && ignored.size() == grey.size()),
+        "the mask is not CV_8UC1 of the size of the image");
   Check(std::min(grey.cols, grey.rows) >= FeatureOptions::kSmallestSide,
         "the image is smaller than 64 x 64 px");
 }
 
 }  // namespace
+
+bool IsIgnored(const cv::Mat& ignored, const Eigen::Vector2f& raw) {
+  const cv::Point pixel(cvRound(raw.x()), cvRound(raw.y()));
+  return cv::Rect({}, ignored.size()).contains(pixel) && ignored.at<unsigned char>(pixel) != 0;
+}
 
 struct FeatureExtractor::Impl {
   explicit Impl(const FeatureOptions& options)
@@ -175,20 +196,21 @@ ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey) {
   return Extract(grey, runner);
 }
 
-ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey, TaskRunner& runner) {
-  CheckImage(grey);
+ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey, TaskRunner& runner,
+                                            const cv::Mat& ignored) {
+  CheckImage(grey, ignored);
   impl_->pyramid.Build(grey);
   // The largest level comes first, so that all threads end at about the same time.
   runner.Run(impl_->extractors.size(),
-             [this](size_t l) { impl_->extractors[l].Extract(impl_->pyramid); });
+             [&](size_t l) { impl_->extractors[l].Extract(impl_->pyramid, ignored); });
   return Join(impl_->extractors);
 }
 
 std::array<ExtractedFeatures, 2> FeatureExtractor::ExtractPair(
     const std::array<FeatureExtractor*, 2>& extractors, const std::array<cv::Mat, 2>& images,
-    TaskRunner& runner) {
-  for (const cv::Mat& image : images) {
-    CheckImage(image);
+    TaskRunner& runner, const std::array<cv::Mat, 2>& ignored) {
+  for (size_t i = 0; i < images.size(); ++i) {
+    CheckImage(images[i], ignored[i]);
   }
   runner.Run(2, [&](size_t i) { extractors[i]->impl_->pyramid.Build(images[i]); });
   const std::array<size_t, 2> levels{extractors[0]->impl_->extractors.size(),
@@ -197,7 +219,7 @@ std::array<ExtractedFeatures, 2> FeatureExtractor::ExtractPair(
     const size_t i = task % 2;
     if (const size_t l = task / 2; l < levels[i]) {
       Impl& impl = *extractors[i]->impl_;
-      impl.extractors[l].Extract(impl.pyramid);
+      impl.extractors[l].Extract(impl.pyramid, ignored[i]);
     }
   });
   return {Join(extractors[0]->impl_->extractors), Join(extractors[1]->impl_->extractors)};

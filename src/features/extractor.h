@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <opencv2/core/mat.hpp>
@@ -18,6 +19,9 @@ struct ExtractedFeatures {
   std::vector<Descriptor> descriptors;  // one per keypoint
 };
 
+// Whether a mask of pixels that are ignored, which may be empty, has a raw position.
+bool IsIgnored(const cv::Mat& ignored, const Eigen::Vector2f& raw);
+
 // Extracts ORB features from images. It keeps its buffers from image to image, so use one extractor
 // per thread.
 class FeatureExtractor {
@@ -34,13 +38,15 @@ class FeatureExtractor {
   // Throws CheckError unless `grey` is CV_8UC1 and at least 64 x 64 px. Returns about feature_count
   // features, or fewer if the image has fewer corners.
   ExtractedFeatures Extract(const cv::Mat& grey);
-  // The same features, with one task per level of the pyramid.
-  ExtractedFeatures Extract(const cv::Mat& grey, TaskRunner& runner);
+  // The same features, with one task per level of the pyramid. `ignored` is empty, or CV_8UC1 of
+  // the size of the image: where it is not 0, no features are wanted, and there are as many more
+  // elsewhere.
+  ExtractedFeatures Extract(const cv::Mat& grey, TaskRunner& runner, const cv::Mat& ignored = {});
   // What Extract() gives for the image of each of two extractors, with all their tasks together, so
   // that two threads are busy with both images until the end.
   static std::array<ExtractedFeatures, 2> ExtractPair(
       const std::array<FeatureExtractor*, 2>& extractors, const std::array<cv::Mat, 2>& images,
-      TaskRunner& runner);
+      TaskRunner& runner, const std::array<cv::Mat, 2>& ignored = {});
 
  private:
   struct Impl;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "frame/detection_depth.h"
@@ -36,13 +37,30 @@ struct FrameView {
   const DetectionOptions& options;
   MaskDepth depth;
   std::span<const RawKeypoint> keypoints;
+  const cv::Mat& mask_all;
 
   // The same frame in the view of a mask.
   FrameView From(const MaskCamera& view) const {
     return {
         .options = options,
         .depth = {.camera = view, .image = depth.image, .units_per_metre = depth.units_per_metre},
-        .keypoints = keypoints};
+        .keypoints = keypoints,
+        .mask_all = mask_all};
+  }
+
+  // Whether a pixel of the view is at the border of what is used of the image.
+  bool IsAtBorder(const Eigen::Vector2d& pixel) const {
+    return depth.camera.IsAtBorder(pixel, options.border_px) ||
+           (!mask_all.empty() && IsNearIgnored(depth.camera.Distort(pixel)));
+  }
+
+ private:
+  bool IsNearIgnored(const Eigen::Vector2d& raw) const {
+    const auto reach = static_cast<int>(std::ceil(options.border_px));
+    const cv::Rect about(cvRound(raw.x()) - reach, cvRound(raw.y()) - reach, 2 * reach + 1,
+                         2 * reach + 1);
+    const cv::Rect inside = about & cv::Rect({}, mask_all.size());
+    return !inside.empty() && cv::countNonZero(mask_all(inside)) < inside.area();
   }
 };
 
@@ -107,9 +125,8 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   detection.box = BoundingBox(outline.hull);
   detection.primitive = frame.options.primitive;
   detection.is_box = mask.shape == MaskShape::kBox;
-  detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(), [&](const auto& corner) {
-    return frame.depth.camera.IsAtBorder(corner, frame.options.border_px);
-  });
+  detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(),
+                                 [&](const auto& corner) { return frame.IsAtBorder(corner); });
   if (mask.shape == MaskShape::kEllipse || frame.options.primitive == ObjectPrimitive::kConic) {
     detection.ellipse = FitEllipse(outline.contour);
   } else if (frame.options.primitive == ObjectPrimitive::kBoxEllipse) {
@@ -235,9 +252,8 @@ std::vector<LineOnOutline> LinesOf(const Candidate& candidate, const FrameView& 
 bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
                 std::span<const MaskRegion* const> others) {
   const bool is_cut =
-      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& point) {
-        return frame.depth.camera.IsAtBorder(point, frame.options.border_px);
-      });
+      std::all_of(line.touching.begin(), line.touching.end(),
+                  [&](const Eigen::Vector2d& point) { return frame.IsAtBorder(point); });
   return is_cut ||
          (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others, frame.options));
 }
@@ -283,7 +299,8 @@ DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, con
   const FrameView frame{
       .options = options_,
       .depth = {.camera = camera_, .image = depth, .units_per_metre = units_per_metre_},
-      .keypoints = keypoints};
+      .keypoints = keypoints,
+      .mask_all = mask_all_};
   DetectionResult result;
   std::vector<Candidate> candidates = PrepareAll(masks, frame, runner, result.rejections);
   RejectDuplicates(options_, candidates, result.rejections);

@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
@@ -29,13 +30,18 @@ struct DetectionResult {
 // Whatever the primitive is, the lines of a box mask are its sides and the lines of an ellipse mask
 // are its tangents.
 //
-// A line is one-sided if it touches the mask only at the border of the raw image. With depth it is
-// also one-sided if something nearer to the camera begins just beyond it.
+// A line is one-sided if it touches the mask only at the border of the raw image, or at pixels that
+// the mask of all images ignores. With depth it is also one-sided if something nearer to the camera
+// begins just beyond it.
 class DetectionBuilder {
  public:
+  // `mask_all` is as in Sensor.
   DetectionBuilder(const PinholeCamera& camera, double units_per_metre,
-                   const DetectionOptions& options)
-      : camera_(camera), units_per_metre_(units_per_metre), options_(options) {}
+                   const DetectionOptions& options, cv::Mat mask_all = {})
+      : camera_(camera),
+        units_per_metre_(units_per_metre),
+        options_(options),
+        mask_all_(std::move(mask_all)) {}
 
   // `depth` is as in ImageInput and has the size of the camera, or it is empty: then detections
   // have no points and no occlusion is found. `keypoints` are those of the frame. Throws CheckError
@@ -50,6 +56,7 @@ class DetectionBuilder {
   PinholeCamera camera_;
   double units_per_metre_;
   DetectionOptions options_;
+  cv::Mat mask_all_;
 };
 
 }  // namespace hullslam

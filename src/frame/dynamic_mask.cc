@@ -46,23 +46,4 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
   return region;
 }
 
-bool IsMasked(const cv::Mat& mask, const RawKeypoint& keypoint) {
-  const cv::Point pixel(cvRound(keypoint.raw.x()), cvRound(keypoint.raw.y()));
-  return cv::Rect({}, mask.size()).contains(pixel) && mask.at<uchar>(pixel) != 0;
-}
-
-void RemoveMasked(const cv::Mat& mask, std::vector<RawKeypoint>& keypoints,
-                  std::vector<Descriptor>& descriptors) {
-  size_t kept = 0;
-  for (size_t i = 0; i < keypoints.size(); ++i) {
-    if (!IsMasked(mask, keypoints[i])) {
-      keypoints[kept] = keypoints[i];
-      descriptors[kept] = descriptors[i];
-      ++kept;
-    }
-  }
-  keypoints.resize(kept);
-  descriptors.resize(kept);
-}
-
 }  // namespace hullslam

@@ -124,15 +124,31 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
   return words;
 }
 
-// The pixels beyond the largest angle of a fisheye lens.
-cv::Mat UnusedPixels(const PinholeCamera& camera) {
-  cv::Mat unused(camera.height, camera.width, CV_8UC1);
-  for (int y = 0; y < camera.height; ++y) {
-    for (int x = 0; x < camera.width; ++x) {
-      unused.at<unsigned char>(y, x) = camera.SeesRaw({x, y}) ? 0 : 255;
+// The pixels that are 0 in the mask of all images, and those beyond the largest angle of a fisheye
+// lens; empty if there are none.
+cv::Mat UnusedPixels(const PinholeCamera& camera, const cv::Mat& mask_all) {
+  cv::Mat unused;
+  if (!mask_all.empty()) {
+    unused = mask_all == 0;
+  }
+  if (camera.IsFisheye()) {
+    if (unused.empty()) {
+      unused = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+    }
+    for (int y = 0; y < camera.height; ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        if (!camera.SeesRaw({x, y})) {
+          unused.at<unsigned char>(y, x) = 255;
+        }
+      }
     }
   }
   return unused;
+}
+
+// The pixels of either mask. Both may be empty.
+cv::Mat Union(const cv::Mat& a, const cv::Mat& b) {
+  return a.empty() ? b : b.empty() ? a : cv::Mat(a | b);
 }
 
 FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
@@ -164,15 +180,14 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       extractor_(FeaturesOf(sensor, features)),
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
-      remove_dynamic_(remove_dynamic) {
-  if (sensor.camera.IsFisheye()) {
-    unused_ = UnusedPixels(sensor.camera);
-  }
+      remove_dynamic_(remove_dynamic),
+      unused_(UnusedPixels(sensor.camera, sensor.mask_all)),
+      unused_right_(UnusedPixels(sensor.camera, sensor.mask_all_right)) {
   if (sensor.kind == SensorKind::kStereo) {
     stereo_.emplace(FeaturesOf(sensor, features), sensor.camera);
   }
   if (detection) {
-    detector_.emplace(sensor.camera, depth, *detection, dynamic_classes_);
+    detector_.emplace(sensor, depth, *detection, dynamic_classes_);
   }
 }
 
@@ -246,7 +261,7 @@ std::vector<uint32_t> FrameBuilder::DynamicKeypoints(std::span<const InstanceMas
     const cv::Mat mask =
         DynamicMask(masks, dynamic_classes_, {sensor_.camera.width, sensor_.camera.height});
     for (uint32_t i = 0; i < input.keypoints.size(); ++i) {
-      if (IsMasked(mask, input.keypoints[i])) {
+      if (IsIgnored(mask, input.keypoints[i].raw)) {
         dynamic.push_back(i);
       }
     }
@@ -268,18 +283,16 @@ std::vector<float> FrameBuilder::SampleDepths(std::span<const RawKeypoint> keypo
 
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
-  ExtractedFeatures extracted = stereo_
-                                    ? stereo_->Extract(extractor_, image.grey, image.right, runner)
-                                    : extractor_.Extract(image.grey, runner);
-  if (!unused_.empty()) {
-    RemoveMasked(unused_, extracted.keypoints, extracted.descriptors);
-  }
-  if (remove_dynamic_) {
-    const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
-    if (!mask.empty()) {
-      RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
-    }
-  }
+  // The keypoints are chosen from what is left, so that as many are found as in other images.
+  const auto ignored_by = [&](const cv::Mat& unused, const std::vector<InstanceMask>& masks) {
+    return remove_dynamic_ ? Union(unused, DynamicMask(masks, dynamic_classes_, image.grey.size()))
+                           : unused;
+  };
+  const cv::Mat ignored = ignored_by(unused_, image.masks);
+  ExtractedFeatures extracted =
+      stereo_ ? stereo_->Extract(extractor_, image.grey, image.right, runner,
+                                 {ignored, ignored_by(unused_right_, image.right_masks)})
+              : extractor_.Extract(image.grey, runner, ignored);
   features.depth = stereo_
                        ? DepthsOf(stereo_->FindDisparities(extracted, extractor_.pyramid(), runner),
                                   sensor_.camera)

@@ -27,8 +27,8 @@ void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera);
 
 // Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
 // right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
-// classes give no detections, and the keypoints on them are removed unless this is switched off.
-// With a vocabulary it looks up the word of each keypoint.
+// classes give no detections, and no keypoints are chosen on them unless this is switched off, nor
+// at pixels that Sensor::mask_all ignores. With a vocabulary it looks up the word of each keypoint.
 class FrameBuilder {
  public:
   // `sensor` must outlive the builder. If `detection` is empty, frames have no detections.
@@ -48,7 +48,7 @@ class FrameBuilder {
   // `input` is BuiltFrame::awaiting. May be called while another thread calls Build.
   void AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
                      TaskRunner& runner, BuiltFrame& built);
-  // The keypoints that Build would have removed with these masks, by increasing index. May be
+  // The keypoints that Build would not have chosen with these masks, by increasing index. May be
   // called while another thread calls Build.
   std::vector<uint32_t> DynamicKeypoints(std::span<const InstanceMask> masks,
                                          const DetectionInput& input) const;
@@ -73,7 +73,9 @@ class FrameBuilder {
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
   bool remove_dynamic_;
-  cv::Mat unused_;  // the pixels that are not used; empty if all are
+  // The pixels that are not used in any image or in any right image (255); empty if all are.
+  cv::Mat unused_;
+  cv::Mat unused_right_;
 };
 
 }  // namespace hullslam

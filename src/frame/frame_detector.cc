@@ -18,11 +18,12 @@ DetectionOptions WithoutKeypoints(DetectionOptions options) {
 
 }  // namespace
 
-FrameDetector::FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,
+FrameDetector::FrameDetector(const Sensor& sensor, const DepthOptions& depth,
                              const DetectionOptions& options, std::set<std::string> dynamic_classes)
-    : camera_(camera),
-      builder_(camera, depth.units_per_metre, options),
-      right_builder_(camera, depth.units_per_metre, WithoutKeypoints(options)),
+    : camera_(sensor.camera),
+      builder_(sensor.camera, depth.units_per_metre, options, sensor.mask_all),
+      right_builder_(sensor.camera, depth.units_per_metre, WithoutKeypoints(options),
+                     sensor.mask_all_right),
       dynamic_classes_(std::move(dynamic_classes)) {}
 
 std::vector<InstanceMask> FrameDetector::OfObjects(std::span<const InstanceMask> masks) const {

@@ -11,6 +11,7 @@
 #include "hullslam/camera/depth.h"
 #include "hullslam/frame/built_frame.h"
 #include "hullslam/frame/instance_mask.h"
+#include "hullslam/frame/sensor.h"
 #include "util/task_runner.h"
 
 namespace hullslam {
@@ -18,8 +19,8 @@ namespace hullslam {
 // Makes the detections of frames, from the masks of all classes that are not dynamic.
 class FrameDetector {
  public:
-  FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,
-                const DetectionOptions& options, std::set<std::string> dynamic_classes);
+  FrameDetector(const Sensor& sensor, const DepthOptions& depth, const DetectionOptions& options,
+                std::set<std::string> dynamic_classes);
 
   // Adds the detections to the frame and counts the masks that gave none. `depth` and `keypoints`
   // are as in DetectionBuilder.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/stereo_features.h"
 
-#include <array>
 #include <utility>
 
 namespace hullslam {
@@ -10,9 +9,10 @@ StereoFeatures::StereoFeatures(const FeatureOptions& features, const PinholeCame
     : extractor_(features), matcher_(extractor_.levels(), camera.fx) {}
 
 ExtractedFeatures StereoFeatures::Extract(FeatureExtractor& left_extractor, const cv::Mat& left,
-                                          const cv::Mat& right, TaskRunner& runner) {
+                                          const cv::Mat& right, TaskRunner& runner,
+                                          const std::array<cv::Mat, 2>& ignored) {
   std::array<ExtractedFeatures, 2> both =
-      FeatureExtractor::ExtractPair({&left_extractor, &extractor_}, {left, right}, runner);
+      FeatureExtractor::ExtractPair({&left_extractor, &extractor_}, {left, right}, runner, ignored);
   right_ = std::move(both[1]);
   return std::move(both[0]);
 }

@@ -86,9 +86,10 @@ void AddLandmarks(const Map& map, const ImageKnowledge& image, HiddenCounter& co
 }
 
 // The share of the area of an ellipse's box that is in the image; exactly 1 if it is there as a
-// whole. With a fisheye lens, whose undistorted image is no box, the share of the outline.
+// whole. With a fisheye lens, whose undistorted image is no box, and with a mask of all images, the
+// share of the outline.
 double ShareInside(const Ellipse& ellipse, const Sensor& sensor) {
-  if (sensor.camera.IsFisheye()) {
+  if (sensor.camera.IsFisheye() || !sensor.mask_all.empty()) {
     const std::vector<Eigen::Vector2d> outline = ellipse.Polygon();
     const auto inside = std::count_if(outline.begin(), outline.end(),
                                       [&](const auto& pixel) { return sensor.Sees(pixel); });

@@ -140,6 +140,10 @@ Json ToJson(const std::optional<NetworkSummary>& network) {
           {"images", network->images},       {"failures", network->failures}};
 }
 
+Json ToJson(const std::optional<MaskAllSummary>& mask) {
+  return mask ? Json{{"path", mask->path}, {"ignored", mask->ignored}} : Json(nullptr);
+}
+
 Json ToJson(const ProvenanceSummary& summary) {
   Json overrides = Json::array();
   for (const PresetOverrideSummary& replaced : summary.preset_overrides) {
@@ -156,6 +160,8 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"masks", OrNull(summary.masks)},
           {"masks_format", OrNull(summary.masks_format)},
           {"network", ToJson(summary.network)},
+          {"mask_all", ToJson(summary.mask_all)},
+          {"mask_all_right", ToJson(summary.mask_all_right)},
           {"sequence", OrNull(summary.sequence)},
           {"dataset", OrNull(summary.dataset)},
           {"sequence_choices", Json(summary.sequence_choices)},

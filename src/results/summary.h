@@ -120,6 +120,12 @@ struct NetworkSummary {
   size_t failures = 0;                         // those of them that it made no masks of
 };
 
+// One mask of all images.
+struct MaskAllSummary {
+  std::string path;
+  double ignored = 0.0;  // share of the pixels
+};
+
 struct ProvenanceSummary {
   std::optional<std::string> program = std::nullopt;  // "rgbd_tum"
   std::optional<std::string> version = std::nullopt;
@@ -132,6 +138,8 @@ struct ProvenanceSummary {
   std::optional<std::string> masks = std::nullopt;  // the path of --masks
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<NetworkSummary> network = std::nullopt;  // absent without --segment
+  std::optional<MaskAllSummary> mask_all = std::nullopt;
+  std::optional<MaskAllSummary> mask_all_right = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
   std::optional<std::string> dataset = std::nullopt;         // ImageSequence::dataset
   std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices

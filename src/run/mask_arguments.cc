@@ -33,6 +33,17 @@ void AddRightMaskArgument(CLI::App& app, std::filesystem::path& path) {
       ->needs("--masks");
 }
 
+void AddMaskAllArgument(CLI::App& app, std::filesystem::path& path) {
+  app.add_option("--mask-all", path,
+                 "one mask for all images, such as that of the robot's own arm, a bonnet or a "
+                 "watermark: a PNG of their size, whose black pixels (0) are ignored in each image "
+                 "(docs/masks.md)");
+}
+
+void AddRightMaskAllArgument(CLI::App& app, std::filesystem::path& path) {
+  app.add_option("--mask-all-right", path, "the same for the right images");
+}
+
 void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every) {
   CLI::Option* const segment =
       app.add_option("--segment", network,

@@ -22,6 +22,9 @@ namespace hullslam {
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
 // Adds --masks-right, after AddMaskArguments().
 void AddRightMaskArgument(CLI::App& app, std::filesystem::path& path);
+// Adds --mask-all, and with a stereo camera --mask-all-right.
+void AddMaskAllArgument(CLI::App& app, std::filesystem::path& path);
+void AddRightMaskAllArgument(CLI::App& app, std::filesystem::path& path);
 // Adds --segment and --segment-every, after AddMaskArguments().
 void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& every);
 // Adds only the option for the format, under the given names, for programs that take the masks as a

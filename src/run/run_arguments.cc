@@ -90,6 +90,10 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   if (arguments.sensor == SensorKind::kStereo) {
     AddRightMaskArgument(app, arguments.masks_right);
   }
+  AddMaskAllArgument(app, arguments.mask_all);
+  if (arguments.sensor == SensorKind::kStereo) {
+    AddRightMaskAllArgument(app, arguments.mask_all_right);
+  }
   AddNetworkArguments(app, arguments.segment, arguments.segment_every);
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);

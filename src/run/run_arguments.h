@@ -30,7 +30,9 @@ struct RunArguments {
   std::filesystem::path masks;             // empty: none
   std::string masks_format;                // empty: detected
   std::filesystem::path masks_right = {};  // of the right images of a stereo camera; empty: none
-  std::filesystem::path segment;           // network that makes masks; empty: none
+  std::filesystem::path mask_all = {};     // one mask for all images; empty: none
+  std::filesystem::path mask_all_right = {};
+  std::filesystem::path segment;  // network that makes masks; empty: none
   size_t segment_every = 1;
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";

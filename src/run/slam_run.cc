@@ -13,6 +13,7 @@
 
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
+#include "masks/mask_all.h"
 #include "results/output_folder.h"
 #include "run/datasets/given_groundtruth.h"
 #include "run/finish_slam.h"
@@ -234,6 +235,8 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
   return {arguments.sequence,
           arguments.masks,
           arguments.masks_right,
+          arguments.mask_all,
+          arguments.mask_all_right,
           arguments.segment,
           arguments.settings,
           arguments.associations,
@@ -279,6 +282,31 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
 }
 
+// Reads the masks of all images into the options.
+void ReadMasksOfAll(const RunArguments& arguments, const ImageSequence& sequence,
+                    SystemOptions& options) {
+  const auto read = [&](const std::filesystem::path& path, ImageSide side, cv::Mat& mask) {
+    if (path.empty()) {
+      return;
+    }
+    mask = ReadMaskAll(path, sequence, options.camera, side);
+    const double ignored = IgnoredShare(mask);
+    if (!arguments.quiet) {
+      Print("one mask for all {}images: {}, {:.1f} % of the pixels are ignored\n",
+            side == ImageSide::kRight ? "right " : "", path.string(), 100.0 * ignored);
+    }
+    constexpr double kMuch = 0.5;
+    if (ignored > kMuch) {
+      PrintError(
+          "warning: {} ignores {:.0f} % of the pixels of each image: its black ones; are black and "
+          "white exchanged?\n",
+          path.string(), 100.0 * ignored);
+    }
+  };
+  read(arguments.mask_all, ImageSide::kLeft, options.mask_all);
+  read(arguments.mask_all_right, ImageSide::kRight, options.mask_all_right);
+}
+
 // The width of a pixel of the depth image in pixels of the colour image; 0 without depth. A depth
 // may be taken from half of its pixel beside the keypoint, and the disparity of a depth camera is
 // known to a part of a pixel of its own.
@@ -304,6 +332,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
         first.depth.cols, first.depth.rows, first.grey.cols, first.grey.rows,
         options.depth.error.disparity_sigma);
   }
+  ReadMasksOfAll(arguments, sequence, options);
   const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
   const SequenceMasks masks = OpenRunMasks(arguments, sequence, options.camera);
   CatchInterrupts();

@@ -12,6 +12,7 @@
 #include "hullslam/eval/rpe.h"
 #include "hullslam/settings/settings.h"
 #include "map/islands.h"
+#include "masks/mask_all.h"
 #include "run/git_revision.h"
 #include "run/messages.h"
 
@@ -151,6 +152,14 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
   provenance.sequence_choices = sequence.choices;
   if (!arguments.masks.empty()) {
     provenance.masks = arguments.masks.string();
+  }
+  if (!arguments.mask_all.empty()) {
+    provenance.mask_all = {.path = arguments.mask_all.string(),
+                           .ignored = IgnoredShare(settings.options.mask_all)};
+  }
+  if (!arguments.mask_all_right.empty()) {
+    provenance.mask_all_right = {.path = arguments.mask_all_right.string(),
+                                 .ignored = IgnoredShare(settings.options.mask_all_right)};
   }
   if (!arguments.save_map.empty()) {
     provenance.map = arguments.save_map.string();

@@ -58,6 +58,13 @@ void ResizeImages(int read_width, int read_height, const PinholeCamera& camera,
     Resize(InterpolationFor(read_width, camera), camera, image);
     return image;
   };
+  for (auto* const fit_mask_all : {&sequence.fit_mask_all, &sequence.fit_right_mask_all}) {
+    *fit_mask_all = [fit = std::move(*fit_mask_all), camera](const cv::Mat& mask) {
+      cv::Mat resized = fit != nullptr ? fit(mask) : mask;
+      Resize(cv::INTER_NEAREST, camera, resized);
+      return resized;
+    };
+  }
   const Eigen::Vector2d scale(static_cast<double>(camera.width) / read_width,
                               static_cast<double>(camera.height) / read_height);
   for (auto* const fit_mask : {&sequence.fit_mask, &sequence.fit_right_mask}) {

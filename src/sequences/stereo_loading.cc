@@ -39,6 +39,12 @@ void FitMasks(const Rectifier& rectifier, ImageSequence& sequence) {
         fmt::format("{:.9f} {:.9f} {:.9f} {:.9f}", q.x(), q.y(), q.z(), q.w());
     sequence.fit_mask = [rectifier](InstanceMask& mask) { rectifier->RectifyLeft(mask); };
     sequence.fit_right_mask = [rectifier](InstanceMask& mask) { rectifier->RectifyRight(mask); };
+    sequence.fit_mask_all = [rectifier](const cv::Mat& mask) {
+      return rectifier->RectifyLeft(mask);
+    };
+    sequence.fit_right_mask_all = [rectifier](const cv::Mat& mask) {
+      return rectifier->RectifyRight(mask);
+    };
   }
 }
 

@@ -19,7 +19,7 @@ namespace hullslam {
 struct KnownPoseMapper::State {
   explicit State(const SystemOptions& options)
       : sensor(MakeSensor(options)),
-        detector(options.camera, options.depth, options.objects.detection,
+        detector(sensor, options.depth, options.objects.detection,
                  SplitNames(options.tracking.dynamic_classes)),
         mapper(sensor, options.objects),
         units_per_metre(options.depth.units_per_metre) {}

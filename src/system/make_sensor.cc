@@ -15,6 +15,8 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.frames_per_second = options.frames_per_second;
   sensor.readout_time = options.tracking.correct_shutter ? options.readout_time : 0.0;
   sensor.readout_direction = options.readout_direction;
+  sensor.mask_all = options.mask_all;
+  sensor.mask_all_right = options.mask_all_right;
   return sensor;
 }
 

@@ -3,11 +3,35 @@
 
 #include <fmt/format.h>
 
+#include <opencv2/core.hpp>
 #include <string>
 
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+namespace {
+
+void CheckMask(const cv::Mat& mask, const PinholeCamera& camera, const char* of) {
+  if (mask.empty()) {
+    return;
+  }
+  if (mask.type() != CV_8UC1) {
+    throw InputError(fmt::format("the mask of all {}images is not CV_8UC1", of));
+  }
+  if (mask.size() != cv::Size(camera.width, camera.height)) {
+    throw InputError(
+        fmt::format("the mask of all {}images is {}x{} px, expected Camera.width x Camera.height, "
+                    "{}x{} px",
+                    of, mask.cols, mask.rows, camera.width, camera.height));
+  }
+  if (cv::countNonZero(mask) == 0) {
+    throw InputError(fmt::format(
+        "the mask of all {}images is 0 everywhere, expected other values at pixels that are used",
+        of));
+  }
+}
+
+}  // namespace
 
 void RunOptions::Bind(OptionTable& options) {
   const OptionScope scope(options, "run");
@@ -61,6 +85,11 @@ void SystemOptions::Validate() const {
     throw InputError(fmt::format(
         "settings: Camera.bf is '{:g}', expected the baseline of the stereo camera times Camera.fx",
         camera.bf));
+  }
+  CheckMask(mask_all, camera, "");
+  CheckMask(mask_all_right, camera, "right ");
+  if (!mask_all_right.empty() && sensor != SensorKind::kStereo) {
+    throw InputError("there is a mask of all right images, expected none without a stereo camera");
   }
   const int most_levels = features.MostLevels(camera.width, camera.height);
   if (most_levels == 0) {

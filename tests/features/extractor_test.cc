@@ -40,6 +40,48 @@ TEST(FeatureExtractor, FindsAboutTheRequestedNumber) {
   }
 }
 
+// The left two thirds of the image are ignored. The rest has as many corners as are wanted.
+TEST(FeatureExtractor, FindsAsManyBesideWhatIsIgnored) {
+  FeatureOptions options;
+  options.feature_count = 300;
+  const cv::Mat image = MakeCornerImage();
+  cv::Mat ignored = cv::Mat::zeros(image.size(), CV_8UC1);
+  ignored.colRange(0, 430).setTo(255);
+  FeatureExtractor extractor(options);
+  SerialRunner runner;
+  const size_t all = extractor.Extract(image, runner).keypoints.size();
+  const ExtractedFeatures features = extractor.Extract(image, runner, ignored);
+  EXPECT_GT(features.keypoints.size(), all * 9 / 10);
+  ASSERT_EQ(features.keypoints.size(), features.descriptors.size());
+  for (const RawKeypoint& keypoint : features.keypoints) {
+    EXPECT_FALSE(IsIgnored(ignored, keypoint.raw)) << keypoint.raw.transpose();
+  }
+  EXPECT_THROW(extractor.Extract(image, runner, ignored.colRange(0, 100)), CheckError);
+}
+
+TEST(FeatureExtractor, AMaskThatIgnoresNothingChangesNothing) {
+  const cv::Mat image = MakeCornerImage();
+  FeatureExtractor extractor(FeatureOptions{});
+  SerialRunner runner;
+  const ExtractedFeatures without = extractor.Extract(image, runner);
+  EXPECT_TRUE(
+      SameBits(extractor.Extract(image, runner, cv::Mat::zeros(image.size(), CV_8UC1)), without));
+}
+
+// Each image of a pair has its own mask.
+TEST(FeatureExtractor, BothImagesOfAPairMayIgnorePixels) {
+  const cv::Mat image = MakeCornerImage();
+  cv::Mat left = cv::Mat::zeros(image.size(), CV_8UC1);
+  left.colRange(0, 300).setTo(255);
+  cv::Mat right = cv::Mat::zeros(image.size(), CV_8UC1);
+  right.rowRange(200, image.rows).setTo(255);
+  FeatureExtractor a(FeatureOptions{}), b(FeatureOptions{});
+  SerialRunner runner;
+  const auto both = FeatureExtractor::ExtractPair({&a, &b}, {image, image}, runner, {left, right});
+  EXPECT_TRUE(SameBits(both[0], FeatureExtractor(FeatureOptions{}).Extract(image, runner, left)));
+  EXPECT_TRUE(SameBits(both[1], FeatureExtractor(FeatureOptions{}).Extract(image, runner, right)));
+}
+
 TEST(FeatureExtractor, KeypointsAreValid) {
   FeatureExtractor extractor(FeatureOptions{});
   const ExtractedFeatures features = extractor.Extract(MakeCornerImage());

@@ -17,6 +17,7 @@
 #include "made_masks.h"
 #include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
+#include "support/square_mask.h"
 
 namespace hullslam {
 namespace {
@@ -180,6 +181,33 @@ TEST(DetectionBuilder, ChordsOfTheSimplifiedHullCutInsideAndSupportLinesDoNot) {
     const Detection support =
         BuildOne(mask, PlainCamera(), WithPrimitive(ObjectPrimitive::kSupport, epsilon));
     EXPECT_LT(LargestExcess(support, truth), 0.02);
+  }
+}
+
+// The mask of all images ignores what is right of the square, as if the image ended there. So the
+// right side of the square says only how far the thing reaches at least.
+TEST(DetectionBuilder, ALineAtPixelsThatAreIgnoredIsOneSided) {
+  const InstanceMask square = Square("cup", 200, 150, 100);
+  for (const PinholeCamera& camera : {PlainCamera(), FisheyeCamera()}) {
+    cv::Mat mask_all(480, 640, CV_8UC1, cv::Scalar(255));
+    const auto build = [&] {
+      return DetectionBuilder(camera, kUnits, {}, mask_all)
+          .Build(std::vector{square}, {}, {})
+          .detections.at(0);
+    };
+    EXPECT_FALSE(build().is_cut);
+    mask_all.colRange(301, 640).setTo(0);
+    const Detection cut = build();
+    EXPECT_TRUE(cut.is_cut);
+    for (const SilhouetteLine& line : cut.lines) {
+      EXPECT_EQ(line.is_one_sided, line.line.normal.x() > 0.2) << line.line.normal.transpose();
+    }
+    mask_all.colRange(0, 320).setTo(0);
+    EXPECT_EQ(DetectionBuilder(camera, kUnits, {}, mask_all)
+                  .Build(std::vector{square}, {}, {})
+                  .rejections.at(0),
+              Reason::kNoSilhouette)
+        << "all of it is ignored";
   }
 }
 

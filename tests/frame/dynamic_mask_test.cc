@@ -37,20 +37,5 @@ TEST(DynamicMask, GrowsBySevenPixelsToEverySideAndUpToTheBorder) {
   EXPECT_EQ(cv::countNonZero(outside), 0);
 }
 
-TEST(RemoveMasked, TakesKeypointsOutWithTheirDescriptors) {
-  const cv::Mat mask =
-      DynamicMask(std::vector{Square("person", 40, 40, 20)}, {"person"}, {100, 100});
-  std::vector<RawKeypoint> keypoints(3);
-  std::vector<Descriptor> descriptors(3);
-  keypoints[0].raw = {10.0f, 10.0f};
-  keypoints[1].raw = {50.0f, 50.0f};
-  keypoints[2].raw = {90.0f, 50.0f};
-  descriptors[2][0] = 7;
-  RemoveMasked(mask, keypoints, descriptors);
-  ASSERT_EQ(keypoints.size(), 2u);
-  EXPECT_EQ(keypoints[1].raw.x(), 90.0f);
-  EXPECT_EQ(descriptors[1][0], 7);
-}
-
 }  // namespace
 }  // namespace hullslam

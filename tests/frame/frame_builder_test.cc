@@ -14,6 +14,7 @@
 
 #include "hullslam/util/error.h"
 #include "support/expect_error.h"
+#include "support/fisheye_camera.h"
 #include "support/made_vocabulary.h"
 #include "support/square_mask.h"
 #include "support/test_cameras.h"
@@ -335,6 +336,94 @@ TEST_F(FrameBuilderTest, DynamicThingsHideTheirKeypointsAndAreNoDetections) {
   EXPECT_EQ(frame->features.depth.size(), frame->features.size());
   ASSERT_EQ(frame->detections.size(), 1u);
   EXPECT_EQ(frame->detections[0].label, "cup");
+}
+
+// A textured thing over two thirds of the image must not use up the wanted number of keypoints.
+TEST_F(FrameBuilderTest, KeypointsAreChosenBesideDynamicThings) {
+  const ImageInput image = MakeImage();
+  FeatureOptions few = FewFeatures();
+  few.feature_count = 60;
+  const auto build = [&](std::vector<InstanceMask> masks) {
+    ImageInput input = image;
+    input.masks = std::move(masks);
+    return FrameBuilder(sensor_, DepthOptions(), few, DetectionOptions(), {"person"})
+        .Build(input, runner_)
+        .frame;
+  };
+  InstanceMask person = Square("person", 0, 0, 240);
+  for (Eigen::Vector2d& corner : person.outlines.front()) {
+    corner.x() *= 200.0 / 240.0;
+  }
+  const size_t wanted = build({})->features.size();
+  const auto frame = build({person});
+  EXPECT_GT(frame->features.size(), wanted * 8 / 10);
+  EXPECT_TRUE(KeypointsInside(*frame, 0.0, 0.0, 200.0).empty());
+}
+
+// The mask of the right image does for the right keypoints what that of the left image does.
+TEST_F(FrameBuilderTest, KeypointsOfTheRightImageAreChosenBesideDynamicThings) {
+  ImageInput pair = MakePair();
+  FeatureOptions few = FewFeatures();
+  few.feature_count = 60;
+  const auto count_with_depth = [&] {
+    const auto frame =
+        FrameBuilder(StereoSensor(), DepthOptions(), few, DetectionOptions(), {"person"})
+            .Build(pair, runner_)
+            .frame;
+    return std::ranges::count_if(frame->features.depth, [](float depth) { return depth > 0.0F; });
+  };
+  const auto person = [](double right) {
+    InstanceMask mask = Square("person", 0, 0, 240);
+    for (Eigen::Vector2d& corner : mask.outlines.front()) {
+      corner.x() *= right / 240.0;
+    }
+    return mask;
+  };
+  pair.masks = {person(200.0)};
+  const auto of_left = count_with_depth();
+  pair.right_masks = {person(200.0 - kDisparity)};
+  EXPECT_GT(count_with_depth(), of_left + 5);
+}
+
+TEST_F(FrameBuilderTest, OneMaskForAllImagesHidesItsPixels) {
+  ImageInput image = MakeImage();
+  image.masks = {Square("book", 200, 60, 80)};
+  Sensor sensor = sensor_;
+  sensor.mask_all = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(1));
+  const auto all = FrameBuilder(sensor, DepthOptions(), FewFeatures()).Build(image, runner_).frame;
+  EXPECT_EQ(all->features.descriptors, Build(image)->features.descriptors) << "all pixels are used";
+  sensor.mask_all.colRange(kWidth / 2, kWidth).setTo(0);
+  const auto half = FrameBuilder(sensor, DepthOptions(), FewFeatures()).Build(image, runner_).frame;
+  EXPECT_GT(half->features.size(), 100u);
+  for (const Keypoint& keypoint : half->features.keypoints) {
+    EXPECT_LT(std::lround(RawPixel(keypoint).x()), kWidth / 2);
+  }
+  EXPECT_EQ(all->detections.size(), 1u);
+  EXPECT_TRUE(half->detections.empty()) << "nothing of the book is used";
+}
+
+// Beyond 80 degrees from the axis nothing is used, and the keypoints are chosen inside.
+TEST_F(FrameBuilderTest, TheBorderOfAFisheyeImageUsesUpNoKeypoints) {
+  Sensor sensor;
+  sensor.kind = SensorKind::kMonocular;
+  sensor.camera = FisheyeCamera();
+  sensor.camera.width = kWidth;
+  sensor.camera.height = kHeight;
+  sensor.camera.fx = sensor.camera.fy = 60.0;  // 80 degrees are 84 px
+  sensor.camera.cx = 160.0;
+  sensor.camera.cy = 120.0;
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(4, 1.2);
+  FeatureOptions few = FewFeatures();
+  few.feature_count = 60;
+  ImageInput image = MakeImage();
+  image.depth = cv::Mat();
+  const auto frame = FrameBuilder(sensor, DepthOptions(), few).Build(image, runner_).frame;
+  EXPECT_GE(frame->features.size(), 50u);
+  for (const Keypoint& keypoint : frame->features.keypoints) {
+    const Eigen::Vector2d raw = sensor.camera.Distort(keypoint.undistorted.cast<double>());
+    EXPECT_LT((raw - Eigen::Vector2d(160.0, 120.0)).norm(), 86.0);
+  }
 }
 
 TEST_F(FrameBuilderTest, DynamicThingsMayKeepTheirKeypoints) {

@@ -64,6 +64,17 @@ TEST_F(Visibility, IsExpectedInTheImageUpToTheRange) {
   EXPECT_FALSE(Shows(Look(aside)));
 }
 
+TEST_F(Visibility, IsNotExpectedWhereTheMaskOfAllImagesIgnoresPixels) {
+  const KeyframeId keyframe = Look(Rigid3());
+  sensor_.mask_all = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  EXPECT_TRUE(Shows(keyframe));
+  sensor_.mask_all(cv::Rect(0, 230, 640, 250)).setTo(0);  // its lower half
+  EXPECT_FALSE(Shows(keyframe));
+  sensor_.mask_all.setTo(255);
+  sensor_.mask_all(cv::Rect(0, 400, 640, 80)).setTo(0);
+  EXPECT_TRUE(Shows(keyframe));
+}
+
 TEST_F(Visibility, APartInTheImageCanBeEnough) {
   Rigid3 aside;
   aside.translation.x() = 0.6;  // the border of the image cuts a little of it

@@ -238,6 +238,25 @@ def test_masks_may_come_after_their_frame(slam, wall):
         slam.add_masks(first.frame, wrong)
 
 
+@pytest.mark.parametrize("kind", [bool, np.uint8])
+def test_one_mask_for_all_images_hides_its_pixels(settings, wall, kind):
+    used = np.ones((240, 320), kind)
+    used[:, 160:] = 0
+    slam = hullslam.System(settings, "rgbd", mask_all=used)
+    used[:] = 0  # the array belongs to the caller
+    for result in wall.track(slam, 0, 3):
+        assert result.state == "tracked"
+        assert result.matches["pixel"][:, 0].max() < 160
+    with pytest.raises(hullslam.InputError, match="mask_all is 160x240 px, expected Camera.width"):
+        hullslam.System(settings, "rgbd", mask_all=np.ones((240, 160), bool))
+    with pytest.raises(hullslam.InputError, match="0 everywhere"):
+        hullslam.System(settings, "rgbd", mask_all=used)
+    with pytest.raises(hullslam.InputError, match="mask_all"):
+        hullslam.System(settings, "rgbd", mask_all=np.ones((240, 320), np.float32))
+    with pytest.raises(hullslam.InputError, match="stereo camera"):
+        hullslam.System(settings, "rgbd", mask_all_right=np.ones((240, 320), bool))
+
+
 def test_the_threaded_pipelines_work(settings, wall):
     for pipeline in ("threaded", "realtime"):
         slam = hullslam.System(settings, pipeline=pipeline)

@@ -107,7 +107,7 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["provenance"]),
             (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
                                       "preset_overrides", "seed", "pipeline", "masks",
-                                      "masks_format", "network", "sequence", "dataset",
+                                      "masks_format", "network", "mask_all", "mask_all_right", "sequence", "dataset",
                                       "sequence_choices", "map", "interrupted", "input_failure"}));
 }
 

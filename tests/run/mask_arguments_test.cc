@@ -113,5 +113,62 @@ TEST_F(SegmentOption, BadUseIsRefusedBeforeAnythingIsWritten) {
   refused({"--segment-every", "3"}, "--segment");
 }
 
+// The right half of the images is ignored.
+class MaskAllOption : public testing::Test {
+ protected:
+  MaskAllOption() {
+    cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(255));
+    mask.colRange(320, 640).setTo(0);
+    cv::imwrite(MaskPath("half.png"), mask);
+    cv::imwrite(MaskPath("small.png"), mask(cv::Rect(0, 0, 640, 400)));
+    cv::imwrite(MaskPath("exchanged.png"), mask(cv::Rect(0, 0, 640, 480)) * 0);
+    mask.colRange(100, 640).setTo(0);
+    cv::imwrite(MaskPath("little.png"), mask);
+  }
+  std::string MaskPath(const std::string& name) const { return (folder_.path() / name).string(); }
+  ProgramResult Run(std::vector<std::string> more) const {
+    more.insert(more.begin(), {plane_.path().string(), "--output", MaskPath("out")});
+    return RunProgram("rgbd_tum", more);
+  }
+  nlohmann::json Provenance() const {
+    return nlohmann::json::parse(ReadFile(MaskPath("out") + "/summary.json"))["provenance"];
+  }
+
+  const PlaneSequence plane_{4};
+  const TemporaryFolder folder_;
+};
+
+TEST_F(MaskAllOption, IsWrittenIntoTheSummary) {
+  const ProgramResult result = Run({"--mask-all", MaskPath("half.png")});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("50.0 % of the pixels are ignored"), std::string::npos)
+      << result.output;
+  EXPECT_EQ(Provenance()["mask_all"]["path"], MaskPath("half.png"));
+  EXPECT_EQ(Provenance()["mask_all"]["ignored"], 0.5);
+  EXPECT_TRUE(Provenance()["mask_all_right"].is_null());
+  ASSERT_EQ(Run({}).exit_code, 0);
+  EXPECT_TRUE(Provenance()["mask_all"].is_null());
+}
+
+TEST_F(MaskAllOption, OfMostOfTheImageIsAWarning) {
+  const ProgramResult result = Run({"--quiet", "--mask-all", MaskPath("little.png")});
+  EXPECT_NE(result.errors.find("are black and white exchanged?"), std::string::npos)
+      << result.errors;
+}
+
+TEST_F(MaskAllOption, IsRefusedBeforeAnythingIsWritten) {
+  const auto refused = [&](const std::string& file, const std::string& fault) {
+    const ProgramResult result = Run({"--mask-all", MaskPath(file)});
+    EXPECT_EQ(result.exit_code, 2) << fault;
+    EXPECT_NE(result.errors.find(fault), std::string::npos) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(MaskPath("out")));
+  };
+  refused("small.png", "640x400");
+  refused("exchanged.png", "black everywhere");
+  refused("none.png", "none.png");
+  EXPECT_EQ(Run({"--mask-all-right", MaskPath("half.png")}).exit_code, 2)
+      << "there is no right one";
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,27 @@ TEST(SystemOptions, EveryDefaultIsInItsRange) {
     EXPECT_FALSE(entry.help.empty()) << entry.key;
   }
   EXPECT_NO_THROW(options.Validate());
+}
+
+TEST(SystemOptions, OneMaskForAllImagesHasTheirSizeAndLeavesSomePixels) {
+  SystemOptions options = WithCamera();
+  options.mask_all = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
+  ExpectInputError([&] { options.Validate(); }, {"mask of all images", "0 everywhere"});
+  options.mask_all.at<unsigned char>(3, 4) = 1;
+  EXPECT_NO_THROW(options.Validate());
+  EXPECT_EQ(MakeSensor(options).mask_all.at<unsigned char>(3, 4), 1);
+  options.mask_all = cv::Mat(240, 320, CV_8UC1, cv::Scalar(255));
+  ExpectInputError([&] { options.Validate(); }, {"320x240", "expected", "640x480"});
+  options.mask_all = cv::Mat(480, 640, CV_8UC3, cv::Scalar(255));
+  ExpectInputError([&] { options.Validate(); }, {"not CV_8UC1"});
+  options.mask_all.release();
+  options.mask_all_right = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  ExpectInputError([&] { options.Validate(); }, {"right images", "stereo camera"});
+  options.sensor = SensorKind::kStereo;
+  EXPECT_NO_THROW(options.Validate());
+  EXPECT_EQ(MakeSensor(options).mask_all_right.cols, 640);
+  options.mask_all_right = cv::Mat(480, 600, CV_8UC1, cv::Scalar(255));
+  ExpectInputError([&] { options.Validate(); }, {"right images", "600x480"});
 }
 
 TEST(SystemOptions, TheShutterMayReadInEachDirection) {

@@ -69,6 +69,10 @@ struct ImageSequence {
   std::function<void(InstanceMask&)> fit_mask = nullptr;
   // The same for the right image.
   std::function<void(InstanceMask&)> fit_right_mask = nullptr;
+  // The same for one mask of all images, 0 or 255, or of all right images. The result may have
+  // values between.
+  std::function<cv::Mat(const cv::Mat&)> fit_mask_all = nullptr;
+  std::function<cv::Mat(const cv::Mat&)> fit_right_mask_all = nullptr;
   // The rotation of the camera of the images that `load` gives, if it turns them; the centre is the
   // same. The poses that a run writes are those of the camera as read.
   std::optional<Rigid3> cam_from_read = std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
@@ -45,12 +46,17 @@ struct SystemOptions {
   // is not a setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
   std::shared_ptr<const Vocabulary> vocabulary;
   uint64_t seed = 0;  // seed of all random choices
+  // One mask for all images (Sensor::mask_all), and one for all right images of a stereo camera;
+  // empty: all pixels are used. No settings of the table.
+  cv::Mat mask_all;
+  cv::Mat mask_all_right;
 
   // Binds every option once. The struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.
   OptionTable Bind();
   // Throws InputError if the options are in their ranges but cannot be used: a camera without focal
-  // length, or pyramid levels that are smaller than a patch.
+  // length, pyramid levels that are smaller than a patch, or a mask of all images that does not
+  // have their size or ignores all pixels.
   void Validate() const;
 };
 
