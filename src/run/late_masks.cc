@@ -57,7 +57,9 @@ bool LateMasks::IsKeyframe(FrameId frame) const {
 
 void LateMasks::AddMade() {
   for (Made& made : worker_->TakeResults()) {
-    system_.AddMasks(made.frame, std::move(made.masks));
+    if (made.masks) {
+      system_.AddMasks(made.frame, *std::move(made.masks));
+    }
   }
 }
 

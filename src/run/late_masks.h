@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "hullslam/system/system.h"
@@ -40,7 +41,7 @@ class LateMasks {
   };
   struct Made {
     FrameId frame;
-    std::vector<InstanceMask> masks;
+    std::optional<std::vector<InstanceMask>> masks;  // absent if the network has failed
   };
   bool IsKeyframe(FrameId frame) const;
   void AddMade();
