@@ -5,8 +5,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 
 #include "hullslam/geometry/dual_quadric.h"
+#include "map/islands.h"
 #include "sequences/jpeg_codec.h"
 #include "util/thin.h"
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr size_t kMostOutlinePoints = 80;
 constexpr size_t kMostKeypoints = 1500;
+constexpr size_t kMostEllipses = 60;   // without masks
 constexpr double kLeastWidth = 160.0;  // px
 constexpr double kMostWidth = 640.0;
 constexpr int kLiveQuality = 70;  // of JPEG
@@ -34,6 +37,14 @@ ViewShape ShapeOf(ObjectId object, const std::string& label,
     shape.points.push_back(scale * camera.Distort(point));
   }
   return shape;
+}
+
+// Whether the object is in the island in which the frame was tracked.
+bool IsWhereTheFrameIs(const FrameReport& report, const Map& map, const ObjectLandmark& object) {
+  const auto& reference = report.tracked.from_keyframe;
+  return !reference || !map.keyframes().Contains(reference->reference) ||
+         object.observations.empty() ||
+         IslandOf(map, object) == IslandOf(map, reference->reference);
 }
 
 }  // namespace
@@ -58,8 +69,37 @@ LivePicture LivePictures::Make(const LiveFrame& frame) {
   return made;
 }
 
+// Masks may come when the frame has been shown. The mapped objects are where they should be seen.
+void LivePictures::AddMappedObjects(const LiveFrame& frame, double scale,
+                                    ViewPicture& picture) const {
+  if (frame.map == nullptr || frame.report.tracked.state != TrackingState::kTracked) {
+    return;
+  }
+  const cv::Rect2d image(0.0, 0.0, picture.width, picture.height);
+  frame.map->objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (picture.ellipses.size() >= kMostEllipses || object.state != ObjectState::kMapped ||
+        !IsWhereTheFrameIs(frame.report, *frame.map, object)) {
+      return;
+    }
+    const auto ellipse =
+        ProjectEllipsoid(camera_.Matrix(), frame.report.tracked.cam_from_world, object.ellipsoid);
+    if (!ellipse) {
+      return;
+    }
+    ViewShape shape = ShapeOf(id, object.Label(), ellipse->Polygon(), camera_, scale);
+    if (std::ranges::any_of(shape.points, [&](const Eigen::Vector2d& point) {
+          return image.contains(cv::Point2d(point.x(), point.y()));
+        })) {
+      picture.ellipses.push_back(std::move(shape));
+    }
+  });
+}
+
 void LivePictures::AddShapes(const LiveFrame& frame, double scale, ViewPicture& picture) const {
   const FrameReport& report = frame.report;
+  if (report.frame->detections.empty()) {
+    AddMappedObjects(frame, scale, picture);
+  }
   for (size_t i = 0; i < report.frame->detections.size(); ++i) {
     const Detection& seen = report.frame->detections[i];
     const ObjectId id = i < report.objects.size() ? report.objects[i] : ObjectId();

@@ -11,7 +11,9 @@ namespace hullslam {
 
 // The image of a frame as browsers see it.
 struct LivePicture {
-  ViewPicture picture;           // with the outlines of all detections
+  // With the outlines of all detections and the ellipses of their objects. In a frame without
+  // detections, with the ellipses of all mapped objects in the image.
+  ViewPicture picture;
   std::vector<float> matched;    // x, y of the keypoints that show a landmark, px of the picture
   std::vector<float> unmatched;  // x, y of the others
 };
@@ -29,6 +31,7 @@ class LivePictures {
 
  private:
   void AddShapes(const LiveFrame& frame, double scale, ViewPicture& picture) const;
+  void AddMappedObjects(const LiveFrame& frame, double scale, ViewPicture& picture) const;
   void AddKeypoints(const LiveFrame& frame, double scale, LivePicture& picture) const;
 
   const PinholeCamera camera_;

@@ -23,6 +23,8 @@ void PrepareStreams() {
           ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
   }
+  // Else nothing would be seen in a pipe or a file before the program ends.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   // Ceres logs with glog what the results of its solvers say too.
   FLAGS_minloglevel = google::GLOG_FATAL;
   std::signal(SIGPIPE, SIG_IGN);

@@ -14,8 +14,8 @@ enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
 // A stream that was closed by the caller is opened to /dev/null, because otherwise the next file
 // that the program opens would take its place and receive the messages. A closed pipe or a file
-// that may not grow becomes an error of the write instead of the end of the program. The log of
-// Ceres does not go to stderr.
+// that may not grow becomes an error of the write instead of the end of the program. Each line of
+// stdout is written when it is complete. The log of Ceres does not go to stderr.
 void PrepareStreams();
 
 // Prints one line, "error: MESSAGE", on stderr.

@@ -7,6 +7,9 @@
 #include <exception>
 
 #include "files/atomic_file.h"
+#include "files/content_hash.h"
+#include "files/read_file.h"
+#include "hullslam/util/error.h"
 #include "run/messages.h"
 #include "util/components.h"
 #include "view/report.h"
@@ -23,6 +26,18 @@ std::string PageOf(const Report& report) {
   return report.page;
 }
 
+// The last line of a report that a run itself has written, with the hash of the run's summary;
+// empty without a summary.
+std::string MarkOf(const fs::path& folder) {
+  try {
+    const std::string summary = ReadFile(folder / "summary.json");
+    return fmt::format("<!-- written by the run with the summary {} -->\n",
+                       ContentHash(summary.data(), summary.size()));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 void AddReportFlag(CLI::App& app, bool& report) {
@@ -36,7 +51,7 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
                         const ImageSequence& sequence, bool is_quiet) {
   try {
     const fs::path file = folder / "report.html";
-    WriteFileAtomically(file, PageOf(MakeReport(folder, map, options, sequence)));
+    WriteFileAtomically(file, PageOf(MakeReport(folder, map, options, sequence)) + MarkOf(folder));
     if (!is_quiet) {
       Print("the report is in {}\n", file.string());
     }
@@ -45,6 +60,16 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
                        error.what());
   }
   return {};
+}
+
+bool HasOwnReport(const fs::path& folder) {
+  constexpr size_t kMostBytes = 100'000'000;
+  const std::string mark = MarkOf(folder);
+  try {
+    return !mark.empty() && ReadFile(folder / "report.html", kMostBytes).ends_with(mark);
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 std::string ReportOf(const fs::path& source) {

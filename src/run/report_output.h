@@ -24,6 +24,10 @@ void AddReportFlag(CLI::App& app, bool& report);
 std::string WriteReport(const std::filesystem::path& folder, const Map& map,
                         const SystemOptions& options, const ImageSequence& sequence, bool is_quiet);
 
+// Whether report.html in the folder was written by the run whose results are there. Then it shows
+// more than the files tell.
+bool HasOwnReport(const std::filesystem::path& folder);
+
 // The report of a finished run or of a file of --save-map as the text of a page. Throws InputError
 // if `source` is neither. Prints what was left out.
 std::string ReportOf(const std::filesystem::path& source);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -63,13 +64,29 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
   ASSERT_EQ(parts["objects"].size(), objects.size());
   EXPECT_EQ(parts["objects"][0]["id"], objects[0]["id"]);
 
-  // A report of the files afterwards has the same objects, and is replaced by the next run.
-  const ProgramResult again = RunProgram("hullslam view", {output_, "--report", "--quiet"});
+  // A report of the files has the same objects, but less than that of the run, which stays. The
+  // next run replaces it.
+  const std::string own = ReadFile(output_ / "report.html");
+  const ProgramResult kept = RunProgram("hullslam view", {output_, "--report"});
+  EXPECT_EQ(kept.exit_code, 0) << kept.errors;
+  EXPECT_NE(kept.output.find("it stays (--output FILE"), std::string::npos) << kept.output;
+  EXPECT_EQ(ReadFile(output_ / "report.html"), own);
+  const fs::path beside = folder_.path() / "later.html";
+  const ProgramResult again =
+      RunProgram("hullslam view", {output_, "--report", "--quiet", "--output", beside});
   EXPECT_EQ(again.exit_code, 0) << again.errors;
-  const Json later = PartsOf(output_ / "report.html");
+  const Json later = PartsOf(beside);
   EXPECT_EQ(later["objects"].size(), objects.size());
   EXPECT_FALSE(later["landmarks"].contains("age"));
   EXPECT_FALSE(later["images"].empty());
+
+  fs::remove(output_ / "report.html");
+  for (int i = 0; i < 2; ++i) {  // a report of the files may be replaced by another one
+    EXPECT_EQ(RunProgram("hullslam view", {output_, "--report", "--quiet"}).exit_code, 0);
+    EXPECT_TRUE(fs::exists(output_ / "report.html"));
+    std::ofstream(output_ / "report.html", std::ios::app) << "changed";
+  }
+  EXPECT_FALSE(ReadFile(output_ / "report.html").ends_with("changedchanged"));
 
   const ProgramResult of_map = RunProgram("hullslam view", {map, "--report"});
   EXPECT_EQ(of_map.exit_code, 0) << of_map.errors;

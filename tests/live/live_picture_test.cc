@@ -81,5 +81,36 @@ TEST_F(LivePictureTest, ShowsDetectionsWithTheirObjects) {
   EXPECT_EQ(picture.ellipses[0].label, "cup");
 }
 
+// In a run in real time, a network's masks come when the frame has been shown.
+TEST_F(LivePictureTest, WithoutDetectionsAllMappedObjectsInTheImageAreDrawn) {
+  Map map;
+  const auto add = [&map](const Eigen::Vector3d& position, ObjectState state) {
+    const ObjectId id = map.AddObject();
+    ObjectLandmark& object = map.MutableObject(id);
+    object.state = state;
+    object.has_shape = true;
+    object.votes = {{"cup", 1.0}};
+    object.ellipsoid = {Rigid3(Eigen::Quaterniond::Identity(), position), {0.2, 0.2, 0.2}};
+    return id;
+  };
+  const Rigid3 world_from_cam = Inverse(SyntheticWorld::CamFromWorld(0));
+  const ObjectId seen = add(world_from_cam * Eigen::Vector3d(0.0, 0.0, 4.0), ObjectState::kMapped);
+  add(world_from_cam * Eigen::Vector3d(0.5, 0.0, 4.0), ObjectState::kCandidate);
+  add(world_from_cam * Eigen::Vector3d(0.0, 0.0, -4.0), ObjectState::kMapped);
+  add(world_from_cam * Eigen::Vector3d(40.0, 0.0, 4.0), ObjectState::kMapped);
+  LiveFrame frame = MadeLiveFrame(world_, 0, std::make_shared<const Map>(map.Snapshot()));
+  auto without_masks = std::make_shared<Frame>(*frame.report.frame);
+  without_masks->detections.clear();
+  frame.report.frame = without_masks;
+  frame.report.objects.clear();
+  LivePictures pictures(world_.sensor().camera, 1 << 20);
+  const ViewPicture picture = pictures.Make(frame).picture;
+  EXPECT_TRUE(picture.outlines.empty());
+  ASSERT_EQ(picture.ellipses.size(), 1u);
+  EXPECT_EQ(picture.ellipses[0].object, seen);
+  frame.report.tracked.state = TrackingState::kLost;
+  EXPECT_TRUE(pictures.Make(frame).picture.ellipses.empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -59,6 +59,15 @@ class RunningProgram {
     return std::fgets(line.data(), line.size(), output_) != nullptr ? line.data() : "";
   }
 
+  // The next line that begins with this text; empty if there is none.
+  std::string ReadLine(const std::string& begin) {
+    std::string line = ReadLine();
+    while (!line.empty() && !line.starts_with(begin)) {
+      line = ReadLine();
+    }
+    return line;
+  }
+
   void Send(int signal) const { ::kill(process_, signal); }
 
   // Waits until the program has ended and returns the exit code; -1 if a signal ended it.

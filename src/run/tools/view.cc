@@ -29,6 +29,15 @@ struct ViewArguments {
 void WritePage(const ViewArguments& arguments, const std::string& page) {
   const fs::path output =
       arguments.output.empty() ? DefaultReportPath(arguments.input) : arguments.output;
+  if (arguments.output.empty() && HasOwnReport(arguments.input)) {
+    if (!arguments.quiet) {
+      Print(
+          "{}: the run has written this report, which shows more than its files tell; it stays "
+          "(--output FILE writes another one)\n",
+          output.string());
+    }
+    return;
+  }
   WriteFileAtomically(output, page);
   if (!arguments.quiet) {
     Print("the report is in {}\n", output.string());
