@@ -71,12 +71,59 @@ std::string TooFewPairs(const Trajectory& reference, const Trajectory& estimate,
   return message.str();
 }
 
-size_t CountDuring(const Trajectory& reference, const Trajectory& estimate) {
+// The poses of `trajectory` whose stamps are between the first and the last one of `other`, both
+// with a margin (s).
+size_t CountDuring(const Trajectory& other, const Trajectory& trajectory, double margin = 0.0) {
   return static_cast<size_t>(
-      std::count_if(estimate.begin(), estimate.end(), [&](const StampedPose& pose) {
-        return !reference.empty() && pose.timestamp >= reference.front().timestamp &&
-               pose.timestamp <= reference.back().timestamp;
+      std::count_if(trajectory.begin(), trajectory.end(), [&](const StampedPose& pose) {
+        return !other.empty() && pose.timestamp >= other.front().timestamp - margin &&
+               pose.timestamp <= other.back().timestamp + margin;
       }));
+}
+
+double SpanOf(const Trajectory& trajectory) {
+  return trajectory.empty() ? 0.0 : trajectory.back().timestamp - trajectory.front().timestamp;
+}
+
+// The median time between two poses, s; 0 for fewer than two. Gaps do not change it.
+double IntervalOf(const Trajectory& trajectory) {
+  std::vector<double> intervals;
+  for (size_t i = 1; i < trajectory.size(); ++i) {
+    intervals.push_back(trajectory[i].timestamp - trajectory[i - 1].timestamp);
+  }
+  if (intervals.empty()) {
+    return 0.0;
+  }
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+// The pairs that there would be if the reference had no gaps and the stamps were right: one for
+// each pose of the estimate during the reference, or fewer if the reference has fewer poses per
+// second.
+size_t ExpectedPairs(const Trajectory& reference, const Trajectory& estimate) {
+  const size_t during = CountDuring(reference, estimate);
+  const double interval = IntervalOf(reference);
+  if (during == 0 || interval <= 0.0) {
+    return during;
+  }
+  const double common = std::min(reference.back().timestamp, estimate.back().timestamp) -
+                        std::max(reference.front().timestamp, estimate.front().timestamp);
+  return std::min(during, static_cast<size_t>(std::floor(common / interval * (1.0 + 1e-9))) + 1);
+}
+
+// Whether a few stamps hit each other by chance: they are less than a tenth of the trajectory with
+// fewer poses (of the reference, those during the estimate count), or of the estimate in number and
+// in time.
+bool AreByChance(const Trajectory& reference, const Trajectory& estimate, double paired,
+                 double paired_span, double max_difference) {
+  constexpr double kLeast = 0.1;
+  const size_t shorter =
+      std::min(estimate.size(), CountDuring(estimate, reference, max_difference));
+  return paired < kLeast * static_cast<double>(shorter) ||
+         (paired < kLeast * static_cast<double>(estimate.size()) &&
+          paired_span < kLeast * SpanOf(estimate));
 }
 
 }  // namespace
@@ -91,16 +138,18 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   report.pairs = pairs.size();
   report.estimate_poses = estimate.size();
   report.reference_poses = reference.size();
-  constexpr double kLeastCoverage = 0.1;
   const double paired = CountDistinctEstimates(pairs);
   report.coverage = estimate.empty() ? 0.0 : paired / static_cast<double>(estimate.size());
-  report.poses_during_reference = CountDuring(reference, estimate);
-  if (pairs.empty() || report.coverage < kLeastCoverage) {
+  report.expected_pairs = ExpectedPairs(reference, estimate);
+  if (!pairs.empty()) {
+    report.paired_span =
+        reference[pairs.back().first].timestamp - reference[pairs.front().first].timestamp;
+  }
+  if (pairs.empty() ||
+      AreByChance(reference, estimate, paired, report.paired_span, max_difference)) {
     report.failure = TooFewPairs(reference, estimate, static_cast<size_t>(paired), max_difference);
     return report;
   }
-  report.paired_span =
-      reference[pairs.back().first].timestamp - reference[pairs.front().first].timestamp;
   const PairedPoints points = Translations(reference, estimate, pairs);
   report.reference_from_estimate =
       AlignPoints(points.estimate, points.reference, options.alignment);
@@ -124,12 +173,10 @@ std::string DescribeMissingPairs(const AteResult& report) {
   constexpr double kEnough = 0.9;
   const auto paired = static_cast<size_t>(
       std::lround(report.coverage * static_cast<double>(report.estimate_poses)));
-  const auto during = static_cast<double>(report.poses_during_reference);
-  if (static_cast<double>(paired) >= kEnough * during) {
+  if (static_cast<double>(paired) >= kEnough * static_cast<double>(report.expected_pairs)) {
     return {};
   }
-  return "only " + std::to_string(paired) + " of the " +
-         std::to_string(report.poses_during_reference) +
+  return "only " + std::to_string(paired) + " of the " + std::to_string(report.expected_pairs) +
          " poses during the ground truth have a partner in it; are the rates of both stamps right, "
          "or does the ground truth have gaps?";
 }

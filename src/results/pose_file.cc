@@ -30,9 +30,9 @@ constexpr size_t kEurocColumns = 17;   // also velocity and biases
 
 struct Layout {
   size_t columns = kPoseColumns;  // of each row
-  size_t first = 0;               // column of the stamp
+  size_t first = 0;               // column of the stamp, or of the first element of a matrix
   bool is_w_first = false;
-  bool is_matrix = false;
+  bool is_matrix = false;  // without stamps, but with the number of the frame if `first` is 1
 };
 
 // The names of the columns, in small letters and without units, which are in brackets.
@@ -53,6 +53,24 @@ std::vector<std::string> NamesOf(std::string_view header) {
   return names;
 }
 
+// Whether the first column is a whole number and the last row of a matrix, if there is one, 0 0
+// 0 1. Files of EuRoC have as many columns as numbered matrices of 16 elements, and whole numbers,
+// too.
+bool IsNumberedMatrix(const TextRow& row) {
+  constexpr double kMostFrames = 1e9;
+  constexpr std::array kLastRow = {0.0, 0.0, 0.0, 1.0};
+  const double number = row.Number(0, "the number of the frame");
+  if (number < 0.0 || number > kMostFrames || number != std::floor(number)) {
+    return false;
+  }
+  for (size_t i = kMatrixColumns + 1; i < row.columns.size(); ++i) {
+    if (row.Number(i, "an element of the matrix") != kLastRow.at(i - kMatrixColumns - 1)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Layout LayoutOf(const TextRow& row) {
   const size_t columns = row.columns.size();
   const std::vector<std::string> names = NamesOf(row.header);
@@ -66,23 +84,26 @@ Layout LayoutOf(const TextRow& row) {
   if (columns == kMatrixColumns || columns == 16) {
     return {.columns = columns, .is_matrix = true};
   }
+  if ((columns == kMatrixColumns + 1 || columns == kEurocColumns) && IsNumberedMatrix(row)) {
+    return {.columns = columns, .first = 1, .is_matrix = true};
+  }
   if (columns == kEurocColumns) {
     return {.columns = columns, .is_w_first = true};
   }
   if (columns != kPoseColumns) {
     row.Fail(fmt::format(
-        "{} columns, expected 8 (timestamp tx ty tz qx qy qz qw), the 12 or 16 of KITTI, or a "
-        "first line with the names of the columns",
+        "{} columns, expected 8 (timestamp tx ty tz qx qy qz qw), the 12 or 16 of KITTI, the same "
+        "behind the number of the frame (KITTI-360), or a first line with the names of the columns",
         columns));
   }
   return {};
 }
 
-Rigid3 ReadMatrix(const TextRow& row) {
+Rigid3 ReadMatrix(const TextRow& row, size_t first) {
   Eigen::Matrix<double, 3, 4> matrix;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 4; ++j) {
-      matrix(i, j) = row.Number(static_cast<size_t>(4 * i + j),
+      matrix(i, j) = row.Number(first + static_cast<size_t>(4 * i + j),
                                 j == 3 ? "a coordinate" : "an element of the rotation",
                                 j == 3 ? kMostMetres : 2.0);
     }
@@ -94,17 +115,37 @@ Rigid3 ReadMatrix(const TextRow& row) {
   return *pose;
 }
 
+// Rounded numbers of a quaternion have a length of 1 but for some hundredths. Other columns that
+// are taken for one have not.
+void CheckLength(const TextRow& row, const std::array<size_t, 4>& columns) {
+  constexpr double kMostDifference = 0.1;
+  double squares = 0.0;
+  for (const size_t column : columns) {
+    const double value = row.Number(column, "an element of the quaternion");
+    squares += value * value;
+  }
+  if (std::abs(std::sqrt(squares) - 1.0) > kMostDifference) {
+    row.Fail(fmt::format(
+        "the columns {} to {} are no quaternion, their length is {:g}, expected 1; a first line "
+        "with the names of the columns tells their order",
+        std::ranges::min(columns) + 1, std::ranges::max(columns) + 1, std::sqrt(squares)));
+  }
+}
+
 Rigid3 ReadPose(const TextRow& row, const Layout& layout) {
   if (row.columns.size() != layout.columns) {
     row.Fail(fmt::format("{} columns, expected {} as in the first line", row.columns.size(),
                          layout.columns));
   }
   if (layout.is_matrix) {
-    return ReadMatrix(row);
+    return ReadMatrix(row, layout.first);
   }
   const size_t at = layout.first;
   const size_t x = at + (layout.is_w_first ? 5 : 4);
-  return {row.Rotation(layout.is_w_first ? at + 4 : at + 7, x, x + 1, x + 2),
+  const size_t w = layout.is_w_first ? at + 4 : at + 7;
+  const Eigen::Quaterniond rotation = row.Rotation(w, x, x + 1, x + 2);
+  CheckLength(row, {w, x, x + 1, x + 2});
+  return {rotation,
           {row.Number(at + 1, "tx", kMostMetres), row.Number(at + 2, "ty", kMostMetres),
            row.Number(at + 3, "tz", kMostMetres)}};
 }
@@ -168,6 +209,7 @@ class Reader {
       if (!layout_) {
         layout_ = LayoutOf(row);
         file_.has_stamps = !layout_->is_matrix;
+        file_.has_numbers = layout_->is_matrix && layout_->first > 0;
       }
       AddPose(row, {StampOf(row), ReadPose(row, *layout_)});
     } catch (const InputError& error) {
@@ -178,7 +220,8 @@ class Reader {
 
   double StampOf(const TextRow& row) {
     if (layout_->is_matrix) {
-      return static_cast<double>(rows_ - 1);
+      return file_.has_numbers ? row.Number(0, "the number of the frame")
+                               : static_cast<double>(rows_ - 1);
     }
     if (row.columns.size() <= layout_->first) {
       row.Fail("has no time stamp");
@@ -244,22 +287,31 @@ PoseFile ReadPoseFile(const fs::path& path) {
     ForEachRow(times, [&](const TextRow& row) { stamps.push_back(row.Stamp(0)); });
     const bool increase =
         std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) == stamps.end();
-    if (stamps.size() == file.poses.size() && increase) {
+    if (increase && FitsFrames(file, stamps.size())) {
       SetStamps(path, stamps, file);
     }
   }
   return file;
 }
 
+bool FitsFrames(const PoseFile& file, size_t frames) {
+  return file.has_numbers ? file.poses.back().timestamp < static_cast<double>(frames)
+                          : file.poses.size() == frames;
+}
+
 void SetStamps(const fs::path& path, std::span<const double> stamps, PoseFile& file) {
-  if (stamps.size() != file.poses.size()) {
+  if (!FitsFrames(file, stamps.size())) {
     throw InputError(fmt::format(
-        "{}: its {} poses have no time stamps (KITTI), and there are {} to compare with; expected "
+        "{}: its {} poses have no time stamps (KITTI){}, and there are {} to compare with; "
+        "expected "
         "as many, or times.txt beside it with one time per line",
-        path.string(), file.poses.size(), stamps.size()));
+        path.string(), file.poses.size(),
+        file.has_numbers ? fmt::format(" but numbers up to {:g}", file.poses.back().timestamp)
+                         : std::string(),
+        stamps.size()));
   }
-  for (size_t i = 0; i < stamps.size(); ++i) {
-    file.poses[i].timestamp = stamps[i];
+  for (StampedPose& pose : file.poses) {
+    pose.timestamp = stamps[static_cast<size_t>(pose.timestamp)];
   }
   file.has_stamps = true;
 }

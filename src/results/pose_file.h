@@ -15,7 +15,8 @@ namespace hullslam {
 // A trajectory that another program wrote.
 struct PoseFile {
   Trajectory poses;
-  bool has_stamps = true;          // false: the stamps are the indices of the rows
+  bool has_stamps = true;    // false: the stamps are the indices of the rows
+  bool has_numbers = false;  // without stamps: these are numbers of frames, and some may be missing
   std::vector<std::string> notes;  // what was converted or skipped
 };
 
@@ -25,7 +26,8 @@ struct PoseFile {
 //   in files of EuRoC and VSLAM-LAB and in those that `export` writes;
 // - EuRoC without names: 17 columns;
 // - KITTI: the 12 numbers of the first three rows of the matrix world from camera, or all 16. They
-//   have no stamps, unless times.txt beside the file has one line for each pose.
+//   have no stamps, unless times.txt beside the file has one line for each pose;
+// - KITTI-360: the same behind the number of the frame, without the poses of some frames.
 // Stamps may be in seconds, milliseconds, microseconds or nanoseconds. Rows that are malformed or
 // go back in time are skipped and counted; of rows with the same stamp, the last one is used.
 // Throws InputError if most rows are malformed, or if most stamps repeat the one before with
@@ -36,8 +38,11 @@ PoseFile ReadPoseFile(const std::filesystem::path& path);
 // They may be rounded to 2 decimals.
 std::optional<Rigid3> PoseOfMatrix(const Eigen::Matrix<double, 3, 4>& matrix);
 
-// Gives the poses of a file without stamps those of as many frames. Throws InputError for another
-// number of frames.
+// Whether a file without stamps has the poses of that many frames.
+bool FitsFrames(const PoseFile& file, size_t frames);
+
+// Gives the poses of a file without stamps those of the frames. Throws InputError unless
+// FitsFrames().
 void SetStamps(const std::filesystem::path& path, std::span<const double> stamps, PoseFile& file);
 
 }  // namespace hullslam

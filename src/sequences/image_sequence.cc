@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,20 +20,14 @@ namespace {
 
 // Keeps the poses of the selected frames, with their stamps.
 void TakeFrames(const ImageSequence& sequence, PoseFile& file) {
-  Trajectory poses;
-  std::vector<double> stamps;
+  constexpr double kUnused = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> stamps(std::max(sequence.available, sequence.frames.back().number + 1),
+                             kUnused);
   for (const FramePaths& frame : sequence.frames) {
-    if (file.poses.size() == sequence.available) {
-      poses.push_back(file.poses[frame.number]);
-      stamps.push_back(frame.timestamp);
-    }
-  }
-  if (poses.empty()) {
-    stamps.resize(sequence.available);
-  } else {
-    file.poses = std::move(poses);
+    stamps.at(frame.number) = frame.timestamp;
   }
   SetStamps(*sequence.groundtruth, stamps, file);
+  std::erase_if(file.poses, [](const StampedPose& pose) { return std::isnan(pose.timestamp); });
 }
 
 }  // namespace

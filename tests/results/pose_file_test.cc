@@ -118,5 +118,50 @@ TEST_F(PoseFileTest, OtherFilesAreRefused) {
   ExpectInputError([&] { Read("1 1 2 3 0 0 0 0\n2 1 2 3 0 0 0 0\n"); }, {"gt:1: ", "length 0"});
 }
 
+// Matrices behind the numbers of frames, of which some are missing. Files of EuRoC have as many
+// columns.
+TEST_F(PoseFileTest, NumberedMatricesAreThoseOfKitti360) {
+  for (const std::string end : {"", " 0 0 0 1", " 0.000 0.000 0.000 1.000"}) {
+    const PoseFile file = Read("1 0.28 -0.96 0 1 0.96 0.28 0 2 0 0 1 3" + end +
+                               "\n4 0.28 -0.96 0 4 0.96 0.28 0 5 0 0 1 6" + end + "\n");
+    EXPECT_FALSE(file.has_stamps);
+    EXPECT_TRUE(file.has_numbers);
+    ASSERT_EQ(file.poses.size(), 2U);
+    EXPECT_EQ(file.poses[1].timestamp, 4.0);
+    EXPECT_EQ(file.poses[1].world_from_cam.translation, Eigen::Vector3d(4.0, 5.0, 6.0));
+    EXPECT_TRUE(file.poses[1].world_from_cam.rotation.isApprox(kTurn, 1e-6));
+    PoseFile stamped = file;
+    EXPECT_FALSE(FitsFrames(stamped, 4));
+    const std::vector<double> stamps = {10.0, 10.1, 10.2, 10.3, 10.4, 10.5};
+    SetStamps("poses.txt", stamps, stamped);
+    EXPECT_EQ(stamped.poses[0].timestamp, 10.1);
+    EXPECT_EQ(stamped.poses[1].timestamp, 10.4);
+    ExpectInputError(
+        [&] {
+          PoseFile again = file;
+          SetStamps("poses.txt", std::vector<double>(4), again);
+        },
+        {"poses.txt", "numbers up to 4"});
+  }
+}
+
+TEST_F(PoseFileTest, NumberedMatricesGetTheStampsOfTimes) {
+  folder_.Write("times.txt", "0.0\n0.1\n0.2\n0.3\n0.4\n");
+  const PoseFile file = Read("1 1 0 0 1 0 1 0 2 0 0 1 3\n4 1 0 0 4 0 1 0 5 0 0 1 6\n");
+  EXPECT_TRUE(file.has_stamps);
+  EXPECT_EQ(file.poses[0].timestamp, 0.1);
+  EXPECT_EQ(file.poses[1].timestamp, 0.4);
+}
+
+TEST_F(PoseFileTest, ColumnsThatAreNoQuaternionAreRefused) {
+  const std::string rest(" 0 0 0 0 0 0 0 0 0\n");
+  ExpectInputError([&] { Read("100 1 2 3 7.5 0.1 0.2 0.3" + rest); },
+                   {"columns 5 to 8", "no quaternion", "expected 1"});
+  ExpectInputError([&] { Read("1.5 0 0 0 1 1 2 3\n"); }, {"columns 5 to 8", "3.87"});
+  EXPECT_EQ(Read("1.5 0 0 0 0 0 0.01 0.99\n").poses.size(), 1U) << "rounded";
+  // Numbers that are no whole ones are no numbers of frames.
+  ExpectInputError([&] { Read("0.5 1 0 0 1 0 1 0 2 0 0 1 3\n"); }, {"13 columns", "KITTI-360"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -29,8 +29,9 @@ struct AteResult {
   size_t estimate_poses = 0;
   size_t reference_poses = 0;
   double coverage = 0.0;  // share of the estimated poses that are paired, 0 to 1
-  // Estimated poses whose stamps are between the first and the last one of the reference.
-  size_t poses_during_reference = 0;
+  // The pairs that there would be without gaps and with the right stamps: of all estimated poses
+  // between the first and the last one of the reference, or fewer if it has fewer poses per second.
+  size_t expected_pairs = 0;
   double paired_span = 0.0;  // s, from the first to the last pair
   // Only with kSim3: the growth of lengths in the estimate from the first tenth of the pairs to the
   // last tenth, 0.01 for 1 %. Each tenth is aligned by itself. Absent if a tenth has fewer than
@@ -40,13 +41,14 @@ struct AteResult {
   bool ok() const { return failure.empty(); }
 };
 
-// Fails if fewer than a tenth of the estimated poses are paired: the few pairs of stamps that hit
-// each other by chance say nothing of the trajectory.
+// Fails if fewer than a tenth of the poses of the shorter trajectory are paired: the few pairs of
+// stamps that hit each other by chance say nothing of the trajectory. A reference with few poses
+// per second is enough if it reaches over a tenth of the estimate's time.
 AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options = {});
 
-// Describes pairs that are fewer than the stamps allow: less than nine tenths of the estimated
-// poses during the reference. Then the stamps of one side have a wrong rate, or the reference has
+// Describes pairs that are fewer than the stamps allow: less than nine tenths of
+// AteResult::expected_pairs. Then the stamps of one side have a wrong rate, or the reference has
 // gaps. Empty if there are enough.
 std::string DescribeMissingPairs(const AteResult& report);
 
