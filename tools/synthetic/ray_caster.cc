@@ -100,8 +100,9 @@ struct RayCaster::Device {
 
 RayCaster::RayCaster(const Scene& scene) : device_(std::make_unique<Device>()) {
   // One thread only, because the acceleration structure must not depend on the timing of several
-  // threads.
-  device_->device.reset(rtcNewDevice("threads=1"));
+  // threads. One set of instructions, because with others distances differ in their last digits,
+  // and images would depend on the kind of processor. Every x86 processor of 64 bits has this one.
+  device_->device.reset(rtcNewDevice("threads=1,isa=sse2"));
   Check(device_->device != nullptr, "Embree has no device on this machine");
   RTCDevice device = device_->device.get();
   device_->still = NewScene(device);
