@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,11 +49,14 @@ std::string NamesOfSuite() {
 
 std::vector<std::string> SplitAtCommas(const std::string& text) {
   std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
+  size_t begin = 0;
+  for (size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) {
+    parts.push_back(text.substr(begin, comma - begin));
   }
-  return parts.empty() ? std::vector<std::string>{""} : parts;
+  if (parts.empty() || begin < text.size()) {
+    parts.push_back(text.substr(begin));
+  }
+  return parts;
 }
 
 // The options of a single sequence. They cannot be combined with --suite.

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrays.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 
 namespace hullslam::python {
 namespace {
-
-constexpr py::ssize_t kLargestSide = 1 << 16;  // px; no camera has more
 
 std::string TypeName(const py::object& object) {
   return py::str(py::type::of(object).attr("__name__"));
@@ -79,17 +81,18 @@ bool HasImageLayout(const py::array& array, int channels) {
 
 // `array` has two or three dimensions.
 PixelSpan View(py::array array, const std::string& name, cv::Size size = {}) {
-  for (int axis = 0; axis < 2; ++axis) {
-    if (array.shape(axis) < 1 || array.shape(axis) > kLargestSide) {
-      throw InputError(name + " has the shape " + ShapeOf(array) +
-                       ", expected a height and a width from 1 to 65536 px");
-    }
-  }
+  const auto height = static_cast<uint64_t>(array.shape(0));
+  const auto width = static_cast<uint64_t>(array.shape(1));
   if (!size.empty() && (array.shape(0) != size.height || array.shape(1) != size.width)) {
-    throw InputError(name + " is " + std::to_string(array.shape(1)) + "x" +
-                     std::to_string(array.shape(0)) +
-                     " px, expected Camera.width x Camera.height, " + std::to_string(size.width) +
-                     "x" + std::to_string(size.height) + " px");
+    throw InputError(fmt::format("{} is {}x{} px, expected Camera.width x Camera.height, {}x{} px",
+                                 name, width, height, size.width, size.height));
+  }
+  if (height < 1 || width < 1 || height > kMostImageSide || width > kMostImageSide ||
+      height * width > kMostImagePixels) {
+    throw InputError(fmt::format(
+        "{} has the shape {}, expected a height and a width from 1 to {} px, and up to {} million "
+        "px together",
+        name, ShapeOf(array), kMostImageSide, kMostImagePixels / 1'000'000));
   }
   const int channels = array.ndim() == 3 ? static_cast<int>(array.shape(2)) : 1;
   if (!HasImageLayout(array, channels)) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <array>
@@ -114,7 +115,7 @@ void BindTrackResult(py::module_& module) {
                              "The objects that masks show in this frame: list of SeenObject.")
       .def("__repr__", [](const FrameReport& r) {
         const std::string reason(r.Reason().value_or(""));
-        return "<hullslam.TrackResult at " + std::to_string(r.tracked.timestamp) +
+        return "<hullslam.TrackResult at " + fmt::format("{:f}", r.tracked.timestamp) +
                " s: " + std::string(ToString(r.tracked.state)) +
                (reason.empty() ? "" : ", " + reason) + ">";
       });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -89,7 +90,7 @@ TrajectoryErrors Evaluate(const py::object& groundtruth, const py::object& estim
                                      {{"tum", PairingRule::kTum}, {"evo", PairingRule::kEvo}}),
       .max_difference = max_difference};
   if (max_difference && !(*max_difference > 0.0)) {
-    throw InputError("max_difference is " + std::to_string(*max_difference) +
+    throw InputError("max_difference is " + fmt::format("{:f}", *max_difference) +
                      ", expected a number of seconds > 0");
   }
   const Trajectory reference = ToTrajectory(groundtruth);
@@ -145,7 +146,7 @@ void BindErrors(py::module_& module) {
           [](const Errors& e) { return ToArray(e.ate.reference_from_estimate.target_from_source); },
           "(4, 4) rigid motion of the estimate after its positions were multiplied by `scale`.")
       .def("__repr__", [](const Errors& e) {
-        return "<hullslam.TrajectoryErrors: ATE RMSE " + std::to_string(e.ate.errors.rmse) +
+        return "<hullslam.TrajectoryErrors: ATE RMSE " + fmt::format("{:f}", e.ate.errors.rmse) +
                " m, " + std::to_string(e.ate.pairs) + " pairs, " + e.alignment + ">";
       });
   module.def("evaluate_trajectory", &Evaluate, py::arg("groundtruth"), py::arg("estimate"),

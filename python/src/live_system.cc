@@ -118,12 +118,12 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const Seco
   }
   CheckStamp(timestamp);
   if (last_stamp_ && !(timestamp > *last_stamp_)) {
-    throw InputError("timestamp is " + std::to_string(timestamp) +
+    throw InputError("timestamp is " + fmt::format("{:f}", timestamp) +
                      " s, expected more than that of the last frame, " +
-                     std::to_string(*last_stamp_) + " s");
+                     fmt::format("{:f}", *last_stamp_) + " s");
   }
   if (last_stamp_ && timestamp - *last_stamp_ > kLongestPause) {
-    throw InputError("timestamp is " + std::to_string(timestamp - *last_stamp_) +
+    throw InputError("timestamp is " + fmt::format("{:f}", timestamp - *last_stamp_) +
                      " s after that of the last frame, expected seconds, not nanoseconds");
   }
   CheckSecond(options_.sensor, second);

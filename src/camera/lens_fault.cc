@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <sstream>
 
 #include "camera/kannala_brandt.h"
 
@@ -132,9 +132,11 @@ std::string FindFisheyeFault(const PinholeCamera& camera) {
 }  // namespace
 
 std::string PrintNumber(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
+  constexpr int kDigits = 6;
+  std::array<char, 32> text = {};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
+                                          std::chars_format::general, kDigits);
+  return {text.data(), end};
 }
 
 std::string FindLensFault(const PinholeCamera& camera) {

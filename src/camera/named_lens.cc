@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <iterator>
 #include <vector>
+
+#include "util/lower_case.h"
 
 namespace hullslam {
 namespace {
@@ -48,9 +48,7 @@ bool AreZero(std::span<const double> numbers) {
 
 std::string SetNamedLens(std::string_view model, std::span<const double> coefficients,
                          PinholeCamera& camera) {
-  std::string name;
-  std::transform(model.begin(), model.end(), std::back_inserter(name),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = LowerCase(model);
   const auto known = std::find_if(kModels.begin(), kModels.end(),
                                   [&](const NamedModel& one) { return one.name == name; });
   for (const Field field : kBrownFields) {

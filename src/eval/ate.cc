@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/eval/ate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -55,20 +55,17 @@ std::optional<double> ScaleDrift(const PairedPoints& points) {
 // Why the pairs are too few. The ranges tell stamps of different clocks or units.
 std::string TooFewPairs(const Trajectory& reference, const Trajectory& estimate, size_t paired,
                         double max_difference) {
-  std::ostringstream message;
-  if (paired == 0) {
-    message << "no pose of the estimate has";
-  } else {
-    message << "only " << paired << " of the " << estimate.size() << " poses of the estimate have";
-  }
-  message << " a partner within " << max_difference << " s in the reference";
+  std::string message = paired == 0 ? "no pose of the estimate has"
+                                    : fmt::format("only {} of the {} poses of the estimate have",
+                                                  paired, estimate.size());
+  message += fmt::format(" a partner within {:g} s in the reference", max_difference);
   if (!reference.empty() && !estimate.empty()) {
-    message << std::fixed << std::setprecision(3) << "; the estimate is from "
-            << estimate.front().timestamp << " to " << estimate.back().timestamp
-            << " s, the reference from " << reference.front().timestamp << " to "
-            << reference.back().timestamp << " s";
+    message += fmt::format(
+        "; the estimate is from {:.3f} to {:.3f} s, the reference from {:.3f} to {:.3f} s",
+        estimate.front().timestamp, estimate.back().timestamp, reference.front().timestamp,
+        reference.back().timestamp);
   }
-  return message.str();
+  return message;
 }
 
 // The poses of `trajectory` whose stamps are between the first and the last one of `other`, both

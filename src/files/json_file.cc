@@ -8,6 +8,7 @@
 
 #include "files/read_text.h"
 #include "hullslam/util/error.h"
+#include "util/classic_locale.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -82,6 +83,7 @@ Json ReadJson(const std::filesystem::path& path, const JsonLimits& limits,
               const Json::parser_callback_t& callback) {
   const std::string text = ReadText(path, limits.most_bytes);
   LimitChecker checker(path, limits, callback);
+  const ClassicLocale locale;  // the parser knows decimal points of one byte only
   try {
     return Json::parse(text, std::ref(checker));
   } catch (const Json::exception& error) {

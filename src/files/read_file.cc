@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <system_error>
@@ -125,7 +124,7 @@ std::string ReadFile(const fs::path& path, size_t most_bytes, std::chrono::milli
     filled += read;
   }
   // The size is not known in advance for a pipe, and it is 0 for the files in /proc.
-  std::array<char, kBlock> block{};
+  std::string block(kBlock, '\0');  // not on the stack, which may be small in a thread
   while (true) {
     if (is_pipe) {
       file.WaitForBytes(patience);

@@ -80,6 +80,16 @@ bool ParseFinite(std::string_view text, double& value) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
+bool ParseFinites(std::string_view text, Eigen::Ref<Eigen::VectorXd> values) {
+  std::vector<std::string_view> columns;
+  SplitColumns(text, columns);
+  bool are_finite = columns.size() == static_cast<size_t>(values.size());
+  for (size_t i = 0; are_finite && i < columns.size(); ++i) {
+    are_finite = ParseFinite(columns[i], values[static_cast<Eigen::Index>(i)]);
+  }
+  return are_finite;
+}
+
 void TextRow::Fail(const std::string& what) const {
   throw InputError(path.string() + ':' + std::to_string(line) + ": " + what);
 }

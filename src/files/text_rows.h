@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <filesystem>
@@ -17,6 +18,10 @@ constexpr size_t kMostLineBytes = 1'000'000;  // limit for a line of a text file
 
 // Parses `text` as a finite number. Returns false unless the whole text is one.
 bool ParseFinite(std::string_view text, double& value);
+
+// Parses `text` as finite numbers with separators of columns between them, as many as `values` has.
+// Returns false for anything else.
+bool ParseFinites(std::string_view text, Eigen::Ref<Eigen::VectorXd> values);
 
 // One line of a text file, split into columns. The views are only valid during the visit.
 struct TextRow {

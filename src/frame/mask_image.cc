@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "frame/label_image.h"
+#include "frame/sort_outlines.h"
 #include "frame/mask_outline.h"
 #include "hullslam/util/error.h"
 
@@ -28,7 +28,7 @@ std::vector<InstanceMask> MasksFromLabels(const cv::Mat& labels,
     throw InputError("the image of labels is neither CV_8UC1 nor CV_16UC1 nor CV_32SC1");
   }
   std::vector<InstanceMask> masks;
-  for (const auto& [number, box] : FindInstances(labels)) {
+  for (auto& [number, outlines] : FindLabelOutlines(labels)) {
     const auto entry = classes.find(number);
     if (entry == classes.end()) {
       throw InputError(
@@ -36,7 +36,7 @@ std::vector<InstanceMask> MasksFromLabels(const cv::Mat& labels,
     }
     InstanceMask mask{.label = entry->second.label,
                       .score = entry->second.score,
-                      .outlines = OutlinesOf(labels, number, box)};
+                      .outlines = std::move(outlines)};
     SortByArea(mask.outlines);
     if (!mask.outlines.empty()) {
       masks.push_back(std::move(mask));

@@ -15,7 +15,7 @@
 #include <boost/beast/http.hpp>
 #include <optional>
 #include <set>
-#include <sstream>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -66,6 +66,19 @@ HttpRequest ReadRequest(const http::request<http::string_body>& parsed) {
     request.token = std::move(token);
   }
   return request;
+}
+
+// The bytes of the header of a reply.
+std::string TextOf(const http::response<http::empty_body>& header) {
+  const auto text_of = [](beast::string_view text) {
+    return std::string_view(text.data(), text.size());
+  };
+  std::string text = fmt::format("HTTP/1.1 {} {}\r\n", header.result_int(),
+                                 text_of(http::obsolete_reason(header.result())));
+  for (const auto& field : header) {
+    text += fmt::format("{}: {}\r\n", text_of(field.name_string()), text_of(field.value()));
+  }
+  return text + "\r\n";
 }
 
 // One browser. It lives as long as an operation of it is under way.
@@ -163,9 +176,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (!reply.is_stream) {
       header.content_length(message_ != nullptr ? message_->size() : 0);
     }
-    std::ostringstream text;
-    text << header.base();
-    header_ = text.str();
+    header_ = TextOf(header);
     const asio::const_buffer body =
         message_ != nullptr ? asio::buffer(*message_) : asio::const_buffer();
     const bool is_stream = reply.is_stream;

@@ -2,10 +2,10 @@
 #include "masks/mask_checks.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
-#include "frame/label_image.h"
+#include "frame/sort_outlines.h"
+#include "util/ascii.h"
 #include "util/printable.h"
 
 namespace hullslam {
@@ -15,9 +15,8 @@ std::string ImageStem(std::string_view name) {
   if (dot == std::string_view::npos || dot + 1 == name.size()) {
     return std::string(name);
   }
-  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
   const std::string_view extension = name.substr(dot + 1);
-  const bool is_extension = std::all_of(extension.begin(), extension.end(), is_letter);
+  const bool is_extension = std::all_of(extension.begin(), extension.end(), IsLetter);
   return std::string(is_extension ? name.substr(0, dot) : name);
 }
 

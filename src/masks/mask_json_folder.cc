@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/json_file.h"
+#include "masks/labelme_shapes.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_coco_instance.h"
 #include "masks/mask_json.h"
@@ -21,13 +21,11 @@ namespace {
 constexpr std::string_view kJsonFolderName = "json";
 constexpr std::string_view kJsonExtension = ".json";
 
-using Json = nlohmann::json;
-
 // The instances of the file of one image.
 class ImageReader {
  public:
   ImageReader(const MaskRequest& request, const std::filesystem::path& path)
-      : request_(request), path_(path) {}
+      : request_(request), path_(path), shapes_(request) {}
 
   FrameMasks Read() {
     ForEachJsonRecord(path_, [&](const JsonRecord& record) { Visit(record); });
@@ -36,6 +34,9 @@ class ImageReader {
       annotation.instance.mask.label =
           categories_.NameOf(record, annotation.category, annotation.class_name);
       AddCocoInstance(annotation.instance, request_, frame_);
+    }
+    for (InstanceMask& mask : shapes_.Take()) {
+      AddInstance(std::move(mask), frame_);
     }
     return std::move(frame_);
   }
@@ -53,11 +54,11 @@ class ImageReader {
     if (record.section == "categories") {
       categories_.Add(record);
     } else if (record.section == "shapes") {
-      AddShape(record);
+      shapes_.Add(record);
     } else if (record.section == "annotations" || record.section.empty()) {
       AddAnnotation(record);
     }
-    if (HasTooMany(frame_) || annotations_.size() > kMostInstances) {
+    if (frame_.crowds + annotations_.size() + shapes_.size() > kMostInstances) {
       record.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   }
@@ -78,61 +79,11 @@ class ImageReader {
     annotations_.push_back(std::move(annotation));
   }
 
-  // Shapes that enclose no area, such as points and lines, are only counted.
-  void AddShape(const JsonRecord& record) {
-    const std::string type = record.value.value("shape_type", Json("polygon")).dump();
-    const std::optional<std::string> label = ClassNameOf(record.value);
-    if (!label) {
-      record.Fail("has no 'label', expected the name of a class");
-    }
-    InstanceMask mask{.label = *label, .score = ScoreOf(record, record.value), .outlines = {}};
-    const std::vector<Eigen::Vector2d> points = Points(record);
-    if (type == "\"rectangle\"" && points.size() >= 2) {
-      const Eigen::Vector2d& a = points[0];
-      const Eigen::Vector2d& b = points[points.size() / 2];  // the corner across, of 2 or of 4
-      mask.shape = MaskShape::kBox;
-      mask.outlines.push_back(BoxOutline(std::min(a.x(), b.x()), std::min(a.y(), b.y()),
-                                         std::max(a.x(), b.x()), std::max(a.y(), b.y()), request_));
-    } else if (type == "\"polygon\"" && points.size() >= 3) {
-      mask.outlines.push_back(InCentres(record, points));
-    }
-    AddInstance(std::move(mask), frame_);
-  }
-
-  std::vector<Eigen::Vector2d> Points(const JsonRecord& record) const {
-    const Json& list = Member(record, record.value, "points");
-    if (!list.is_array() || list.size() > kMostOutlinePoints) {
-      record.Fail(fmt::format("points is {}, expected a list of up to {} points", ShowJson(list),
-                              kMostOutlinePoints));
-    }
-    std::vector<Eigen::Vector2d> points;
-    for (const Json& point : list) {
-      const std::vector<double> numbers = Numbers(record, point, "a point");
-      if (numbers.size() != 2) {
-        record.Fail("a point is " + ShowJson(point) + ", expected [x, y]");
-      }
-      points.emplace_back(numbers[0], numbers[1]);
-    }
-    return points;
-  }
-
-  // In the files, 0 is the border of the image.
-  std::vector<Eigen::Vector2d> InCentres(const JsonRecord& record,
-                                         std::vector<Eigen::Vector2d> points) const {
-    for (Eigen::Vector2d& point : points) {
-      point.array() -= 0.5;
-      if (!IsNearImage(point, request_)) {
-        record.Fail(fmt::format("point ({}, {}) is outside the image of {}x{} px", point.x() + 0.5,
-                                point.y() + 0.5, request_.width, request_.height));
-      }
-    }
-    return points;
-  }
-
   const MaskRequest& request_;
   const std::filesystem::path& path_;
   CocoCategories categories_;
   std::vector<Annotation> annotations_;
+  LabelMeShapes shapes_;
   FrameMasks frame_;
 };
 
@@ -164,9 +115,12 @@ class JsonFolderMasks : public MaskSource {
   std::set<std::string> stems_;
 };
 
-// A single file is rather that of all images.
+// A single file that is not named as a frame is rather that of all images. LabelMe's files are
+// beside the images.
 bool IsJsonFolder(const MaskProbe& probe) {
-  return probe.jsons > 1 && probe.texts == 0 && !probe.has_images;
+  const bool is_label_png = probe.has_images && probe.has_classes_json;
+  return (probe.jsons > 1 || (probe.jsons == 1 && probe.has_names_of_frames)) && probe.texts == 0 &&
+         !is_label_png;
 }
 
 std::unique_ptr<MaskSource> OpenJsonFolder(const MaskRequest& request) {

@@ -14,7 +14,7 @@
 #include "files/json_file.h"
 #include "files/read_file.h"
 #include "files/text_rows.h"
-#include "frame/label_image.h"
+#include "frame/mask_outline.h"
 #include "hullslam/frame/mask_image.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_checks.h"
@@ -187,8 +187,10 @@ class LabelPngMasks : public MaskSource {
       return result;
     }
     const cv::Mat labels = Load(frame);
-    for (const auto& [number, box] : FindInstances(labels)) {
-      AddInstance(Outline(frame, labels, number, box), result);
+    for (auto& [number, outlines] : FindLabelOutlines(labels)) {
+      const InstanceClass& entry = ClassOf(frame, number);
+      AddInstance({.label = entry.label, .score = entry.score, .outlines = std::move(outlines)},
+                  result);
       if (HasTooMany(result)) {
         throw InputError(fmt::format("{}: too many instances, expected at most {} per frame",
                                      Path(frame).string(), kMostInstances));
@@ -211,13 +213,6 @@ class LabelPngMasks : public MaskSource {
                                    request_.height));
     }
     return labels;
-  }
-
-  InstanceMask Outline(const MaskFrame& frame, const cv::Mat& labels, int number,
-                       const cv::Rect& box) const {
-    const InstanceClass& entry = ClassOf(frame, number);
-    return {
-        .label = entry.label, .score = entry.score, .outlines = OutlinesOf(labels, number, box)};
   }
 
   const InstanceClass& ClassOf(const MaskFrame& frame, int number) const {

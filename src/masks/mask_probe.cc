@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -40,18 +41,43 @@ bool ProbeRow(const fs::path& path, MaskProbe& probe) {
   return probe.columns >= kEnoughColumns;
 }
 
-void ProbeFolder(MaskProbe& probe) {
+// The names that the files of these frames may have. The format `paper` numbers them.
+std::set<std::string> NamesOf(std::span<const MaskFrame> frames) {
+  std::set<std::string> names;
+  for (const MaskFrame& frame : frames) {
+    names.insert({frame.stem, frame.video_name, fmt::format("{:06}", frame.number)});
+  }
+  return names;
+}
+
+// The files with an ending that are no list of classes, and of these the ones named as frames.
+struct NamedFiles {
+  std::set<std::string> all;
+  std::set<std::string> of_frames;
+};
+
+NamedFiles FindNamed(const fs::path& folder, const std::string& ending,
+                     const std::set<std::string>& frames) {
+  NamedFiles files{.all = ListFiles(folder, ending), .of_frames = {}};
+  files.all.erase("classes");
+  std::ranges::set_intersection(files.all, frames,
+                                std::inserter(files.of_frames, files.of_frames.end()));
+  return files;
+}
+
+void ProbeFolder(std::span<const MaskFrame> frames, MaskProbe& probe) {
   std::error_code error;
   probe.has_images = !ListFiles(probe.path, ".png").empty();
   probe.has_classes_json = fs::exists(probe.path / "classes.json", error);
   probe.has_paper_folder = fs::is_directory(probe.path / "segmentation_txt", error);
-  std::set<std::string> json = ListFiles(probe.path, ".json");
-  json.erase("classes");
-  probe.jsons = json.size();
-  std::set<std::string> texts = ListFiles(probe.path, ".txt");
-  texts.erase("classes");
-  probe.texts = texts.size();
-  for (const std::string& name : texts) {
+  const std::set<std::string> names = NamesOf(frames);
+  NamedFiles jsons = FindNamed(probe.path, ".json", names);
+  NamedFiles texts = FindNamed(probe.path, ".txt", names);
+  probe.has_names_of_frames = !jsons.of_frames.empty() || !texts.of_frames.empty();
+  const std::set<std::string>& counted = probe.has_names_of_frames ? texts.of_frames : texts.all;
+  probe.jsons = (probe.has_names_of_frames ? jsons.of_frames : jsons.all).size();
+  probe.texts = counted.size();
+  for (const std::string& name : counted) {
     if (ProbeRow(probe.path / (name + ".txt"), probe)) {
       return;
     }
@@ -110,7 +136,7 @@ std::string DescribeFolderMisfit(const MaskProbe& probe) {
            SuggestSubfolder(probe.path);
   }
   if (probe.jsons > 0) {
-    return "has a JSON file but no text files; give the path of the JSON file";
+    return "has a JSON file that is not named as a frame; give the path of the file";
   }
   return "has neither text files nor PNG or JSON files, expected masks" +
          SuggestSubfolder(probe.path);
@@ -130,7 +156,8 @@ void ProbeFile(std::span<const std::string_view> json_keys, MaskProbe& probe) {
 
 }  // namespace
 
-MaskProbe ProbeMasks(const fs::path& path, std::span<const std::string_view> json_keys) {
+MaskProbe ProbeMasks(const fs::path& path, std::span<const std::string_view> json_keys,
+                     std::span<const MaskFrame> frames) {
   MaskProbe probe;
   probe.path = path;
   std::error_code error;
@@ -143,7 +170,7 @@ MaskProbe ProbeMasks(const fs::path& path, std::span<const std::string_view> jso
                      ": is neither a folder nor a file; give --masks-format to read it");
   }
   if (probe.is_folder) {
-    ProbeFolder(probe);
+    ProbeFolder(frames, probe);
   } else {
     ProbeFile(json_keys, probe);
   }

@@ -7,10 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "hullslam/masks/mask_source.h"
+
 namespace hullslam {
 
 // Facts about the files at a path. From these each format decides whether the files have this
-// format.
+// format. If some files of a folder have the names of frames, the others do not count: lists of
+// labels, notes and the like.
 struct MaskProbe {
   std::filesystem::path path;
   bool is_folder = false;
@@ -24,13 +27,15 @@ struct MaskProbe {
   bool has_images = false;  // has PNG files
   size_t jsons = 0;         // JSON files other than classes.json
   bool has_classes_json = false;
-  bool has_paper_folder = false;  // has a folder segmentation_txt
-  std::string json_key;           // for a file: that of the given keys that comes first in it
+  bool has_names_of_frames = false;  // files are named as frames, and only they count
+  bool has_paper_folder = false;     // has a folder segmentation_txt
+  std::string json_key;              // for a file: that of the given keys that comes first in it
 };
 
 // Searches a file for the keys. Throws InputError if the path does not exist or cannot be read.
 MaskProbe ProbeMasks(const std::filesystem::path& path,
-                     std::span<const std::string_view> json_keys = {});
+                     std::span<const std::string_view> json_keys = {},
+                     std::span<const MaskFrame> frames = {});
 
 // Says why no format fits and what the user can do. The text continues a message, so it begins with
 // a small letter. `json_keys` describes the keys of all formats. Throws InputError if the file is

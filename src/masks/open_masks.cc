@@ -68,8 +68,9 @@ const MaskFormat& FindFormat(const std::string& name) {
   return **found;
 }
 
-const MaskFormat& DetectFormat(const std::filesystem::path& path) {
-  const MaskProbe probe = ProbeMasks(path, JsonKeys());
+const MaskFormat& DetectFormat(const std::filesystem::path& path,
+                               std::span<const MaskFrame> frames) {
+  const MaskProbe probe = ProbeMasks(path, JsonKeys(), frames);
   std::vector<const MaskFormat*> fitting;
   std::vector<std::string_view> names;
   for (const MaskFormat* const format : kFormats) {
@@ -121,7 +122,7 @@ std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
   Check(!frames.empty() && request.width > 0 && request.height > 0,
         "masks need frames and the size of their images");
   const MaskFormat& format =
-      request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
+      request.format.empty() ? DetectFormat(request.path, frames) : FindFormat(request.format);
   std::unique_ptr<const MaskSource> source = format.open(request);
   CheckSomeFrameHasMasks(request.path, *source, frames);
   return AddEmbeddings(std::move(source), EmbeddingFolder(request.path), frames);

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
+#include "files/text_rows.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
@@ -16,6 +16,12 @@ std::string ShareText(double coordinate, int size) {
 }
 
 std::string ScoreText(double score) { return fmt::format("{:.4f}", score); }
+
+double ValueOf(const std::string& text) {
+  double value = 0.0;
+  Check(ParseFinite(text, value), "the text of a mask is no number");
+  return value;
+}
 
 void AddShares(double x, double y, const cv::Size& image, std::string& text) {
   text += ' ' + ShareText(x, image.width) + ' ' + ShareText(y, image.height);
@@ -53,10 +59,10 @@ std::string YoloText(std::span<const InstanceMask> masks, const std::vector<std:
 
 void RoundAsYoloText(const cv::Size& image, std::vector<InstanceMask>& masks) {
   for (InstanceMask& mask : masks) {
-    mask.score = std::strtod(ScoreText(mask.score).c_str(), nullptr);
+    mask.score = ValueOf(ScoreText(mask.score));
     for (Eigen::Vector2d& point : mask.outlines.front()) {
-      point.x() = std::strtod(ShareText(point.x(), image.width).c_str(), nullptr) * image.width;
-      point.y() = std::strtod(ShareText(point.y(), image.height).c_str(), nullptr) * image.height;
+      point.x() = ValueOf(ShareText(point.x(), image.width)) * image.width;
+      point.y() = ValueOf(ShareText(point.y(), image.height)) * image.height;
     }
   }
 }

@@ -5,13 +5,13 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "files/json_file.h"
 #include "files/json_node.h"
+#include "files/text_rows.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
@@ -79,9 +79,8 @@ Trajectory OfRectified(const SequenceOfRun& sequence, Trajectory as_read) {
   if (choice == sequence.choices.end()) {
     return as_read;
   }
-  std::istringstream text(choice->second);
   Eigen::Quaterniond q;
-  if (!(text >> q.x() >> q.y() >> q.z() >> q.w()) || !(q.norm() > 0.0)) {
+  if (!ParseFinites(choice->second, q.coeffs()) || !(q.norm() > 0.0)) {
     throw InputError(
         fmt::format("rectified_from_left in summary.json is '{}', expected a rotation x y z w",
                     ShowText(choice->second)));

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <string_view>
 #include <thread>
@@ -18,6 +17,7 @@
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "system/make_sensor.h"
+#include "util/ascii.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -31,8 +31,7 @@ constexpr const char* kAddressHelp =
     "from the whole network, where only the printed address with its token opens it";
 
 bool IsNumber(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(),
-                                      [](unsigned char c) { return std::isdigit(c) != 0; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), IsDigit);
 }
 
 // The file of a map that a browser asks for. Without --save-map it is beside the output folder,

@@ -3,11 +3,14 @@
 
 #include <fcntl.h>
 #include <glog/logging.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
+#include <future>
 #include <system_error>
 
 #include "run/messages.h"
@@ -29,6 +32,23 @@ void PrepareStreams() {
   FLAGS_minloglevel = google::GLOG_FATAL;
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int CallWithStack(const std::function<int()>& work) {
+  constexpr size_t kUsual = 8 << 20;
+  // The stacks of threads have by default the limit of the first one.
+  pthread_attr_t attributes;
+  size_t stack = kUsual;
+  if (::pthread_getattr_default_np(&attributes) != 0) {
+    return work();
+  }
+  ::pthread_attr_getstacksize(&attributes, &stack);
+  if (stack < kUsual) {
+    ::pthread_attr_setstacksize(&attributes, kUsual);
+    ::pthread_setattr_default_np(&attributes);
+  }
+  ::pthread_attr_destroy(&attributes);
+  return stack < kUsual ? std::async(std::launch::async, work).get() : work();
 }
 
 void PrintFailure(const std::string& message) { PrintError("error: {}\n", message); }

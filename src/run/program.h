@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <initializer_list>
 #include <new>
 #include <string>
@@ -28,6 +29,10 @@ int FailIfAny(std::initializer_list<std::string> failures);
 // written, prints the reason on stderr and returns kFailed instead of kDone.
 int FinishStdout(int code);
 
+// Calls `work` and returns its result. If the stack of the program is limited to less than usual
+// (ulimit -s), `work` has a thread with a usual one, as all threads that start later.
+int CallWithStack(const std::function<int()>& work);
+
 // Calls `run(argc, argv)` and returns its exit code. Turns an exception into one line on stderr and
 // an exit code.
 template <typename Run>
@@ -35,7 +40,7 @@ int RunMain(const Run& run, int argc, char** argv) {
   PrepareStreams();
   int code = kFailed;
   try {
-    code = run(argc, argv);
+    code = CallWithStack([&] { return run(argc, argv); });
   } catch (const InputError& error) {
     PrintFailure(error.what());
     code = kBadInput;

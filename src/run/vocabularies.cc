@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
 #include <chrono>
 #include <fstream>
 #include <span>
-#include <sstream>
 #include <string>
 #include <system_error>
 
+#include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
 
@@ -57,14 +58,9 @@ bool IsVocabularyFile(const std::filesystem::path& path) {
   }
   // The text form begins with four whole numbers: branching, levels, score and weight.
   const std::string line = begin.substr(0, begin.find_first_of("\r\n"));
-  std::istringstream words(line);
-  size_t numbers = 0;
-  for (std::string word; words >> word; ++numbers) {
-    if (word.find_first_not_of("0123456789") != std::string::npos) {
-      return false;
-    }
-  }
-  return numbers == 4;
+  Eigen::Vector4d numbers;
+  return line.find_first_not_of("0123456789 \t") == std::string::npos &&
+         ParseFinites(line, numbers);
 }
 
 void AddVocabularyForm(CLI::App& app, std::string& form) {

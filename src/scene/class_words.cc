@@ -2,16 +2,15 @@
 #include "scene/class_words.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "util/ascii.h"
 #include "util/lower_case.h"
 
 namespace hullslam {
 namespace {
 
 bool IsInWord(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte >= 0x80 || std::isalnum(byte) != 0;
+  return static_cast<unsigned char>(c) >= 0x80 || IsDigit(c) || IsLetter(c);
 }
 
 // Whether `word` is `singular` or a plural of it.

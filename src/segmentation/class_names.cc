@@ -13,6 +13,7 @@
 
 #include "files/read_text.h"
 #include "hullslam/util/error.h"
+#include "util/ascii.h"
 #include "util/printable.h"
 #include "util/trim.h"
 
@@ -20,7 +21,7 @@ namespace hullslam {
 namespace {
 
 void SkipBlanks(std::string_view& text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
+  while (!text.empty() && IsBlank(text.front())) {
     text.remove_prefix(1);
   }
 }

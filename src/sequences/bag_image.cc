@@ -15,6 +15,7 @@
 
 #include "files/byte_reader.h"
 #include "hullslam/util/error.h"
+#include "sequences/eight_bits.h"
 #include "sequences/image_file.h"
 #include "sequences/rvl_depth.h"
 #include "util/printable.h"
@@ -110,39 +111,6 @@ cv::Mat PixelsOf(const RawImageMessage& message, int type, const std::string& na
     }
   }
   return image;
-}
-
-// The luma as libpng computes it when OpenCV reads a PNG in grey: in units of 1 / 32768, rounded
-// down. cv::cvtColor rounds in another way, so that a recording would give another trajectory than
-// the PNG files of the same images.
-cv::Mat GreyLikePng(const cv::Mat& image, int red) {
-  constexpr unsigned int kRed = 9797;     // 0.299
-  constexpr unsigned int kGreen = 19234;  // 0.587
-  constexpr unsigned int kBlue = 32768 - kRed - kGreen;
-  cv::Mat grey(image.size(), CV_8UC1);
-  const int blue = 2 - red;
-  const int channels = image.channels();
-  for (int y = 0; y < image.rows; ++y) {
-    const uint8_t* pixel = image.ptr<uint8_t>(y);
-    auto* const luma = grey.ptr<uint8_t>(y);
-    for (int x = 0; x < image.cols; ++x, pixel += channels) {
-      luma[x] = static_cast<uint8_t>(
-          (kRed * pixel[red] + kGreen * pixel[1] + kBlue * pixel[blue]) >> 15U);
-    }
-  }
-  return grey;
-}
-
-// Images of 16 bits use as many of them as the camera has: 10, 12, 14 or 16. The highest of these
-// become the 8 bits that are read.
-cv::Mat To8Bits(const cv::Mat& image, uint16_t brightest) {
-  if (image.depth() == CV_8U) {
-    return image;
-  }
-  const int bits = std::max(8, (static_cast<int>(std::bit_width(unsigned{brightest})) + 1) / 2 * 2);
-  cv::Mat scaled;
-  image.convertTo(scaled, CV_8U, 1.0 / (1 << (bits - 8)));
-  return scaled;
 }
 
 bool IsGrey(const Encoding& encoding) { return encoding.to_colour == cv::COLOR_GRAY2BGR; }

@@ -8,6 +8,7 @@
 #include <array>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <span>
 #include <utility>
 
 #include "bags/bag.h"
@@ -277,33 +278,71 @@ std::string DescribeDepth(const TopicImages& topic, double float_units) {
               : std::string());
 }
 
-// The camera of a CameraInfo. `frames_per_second` is that of its images.
-CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
-                                double frames_per_second) {
-  const CameraInfoMessage& info = *topic.camera;
-  const std::string place = fmt::format("{}: {}", path.string(), ShowText(topic.name));
-  const auto fail = [&](const std::string& fault) {
-    throw InputError(fmt::format("{}: {}; expected --settings FILE", place, fault));
-  };
+// The camera of a CameraInfo, and how it was read.
+struct ReadCamera {
   PinholeCamera camera;
-  if (const std::string expected = SetNamedLens(info.distortion_model, info.distortion, camera);
-      !expected.empty()) {
-    fail(fmt::format("the distortion is '{}' with {} coefficients, {}",
-                     ShowText(info.distortion_model, 40), info.distortion.size(), expected));
-  }
-  if (info.k[0] == 0.0) {
-    fail("the camera is not calibrated, its matrix K is 0");
-  }
-  if (info.width > kMostImagePixels || info.height > kMostImagePixels) {
-    fail(fmt::format("the camera has {}x{} px", info.width, info.height));
-  }
-  camera.fx = info.k[0];
-  camera.fy = info.k[4];
-  camera.cx = info.k[2];
-  camera.cy = info.k[5];
+  std::string note;
+};
+
+[[noreturn]] void FailInfo(const fs::path& path, const IndexedTopic& info,
+                           const std::string& fault) {
+  throw InputError(fmt::format("{}: {}: {}; expected --settings FILE", path.string(),
+                               ShowText(info.name), fault));
+}
+
+// The camera with the focal lengths and the centre of K or P, whose rows have `columns` numbers.
+PinholeCamera CameraOf(std::span<const double> matrix, size_t columns,
+                       const CameraInfoMessage& info) {
+  PinholeCamera camera;
+  camera.fx = matrix[0];
+  camera.fy = matrix[columns + 1];
+  camera.cx = matrix[2];
+  camera.cy = matrix[columns + 2];
   camera.width = static_cast<int>(info.width);
   camera.height = static_cast<int>(info.height);
-  return {.camera = camera, .frames_per_second = frames_per_second};
+  return camera;
+}
+
+// The camera of raw images: K and the distortion.
+ReadCamera RawCameraOf(const fs::path& path, const IndexedTopic& topic) {
+  const CameraInfoMessage& info = *topic.camera;
+  ReadCamera read{CameraOf(info.k, 3, info), "raw images: K and D"};
+  if (const std::string expected =
+          SetNamedLens(info.distortion_model, info.distortion, read.camera);
+      !expected.empty()) {
+    FailInfo(path, topic,
+             fmt::format("the distortion is '{}' with {} coefficients, {}",
+                         ShowText(info.distortion_model, 40), info.distortion.size(), expected));
+  }
+  if (info.k[0] == 0.0) {
+    FailInfo(path, topic, "the camera is not calibrated, its matrix K is 0");
+  }
+  return read;
+}
+
+// The camera of rectified images: the left half of the projection P. Drivers of cameras that need
+// no rectification leave P empty; then K is that of the images.
+ReadCamera RectifiedCameraOf(const fs::path& path, const IndexedTopic& topic) {
+  const CameraInfoMessage& info = *topic.camera;
+  if (info.p[0] > 0.0) {
+    return {CameraOf(info.p, 4, info), "rectified images by the name of their topic: P"};
+  }
+  const bool is_distorted =
+      std::ranges::any_of(info.distortion, [](double number) { return number != 0.0; });
+  if (!(info.k[0] > 0.0) || is_distorted) {
+    FailInfo(path, topic,
+             "the images are rectified by the name of their topic, but its matrix P is 0");
+  }
+  return {CameraOf(info.k, 3, info), "rectified images by the name of their topic: K, as P is 0"};
+}
+
+ReadCamera CameraOfInfo(const fs::path& path, const IndexedTopic& info,
+                        const IndexedTopic& images) {
+  if (info.camera->width > kMostImagePixels || info.camera->height > kMostImagePixels) {
+    FailInfo(path, info,
+             fmt::format("the camera has {}x{} px", info.camera->width, info.camera->height));
+  }
+  return IsRectifiedTopic(images) ? RectifiedCameraOf(path, info) : RawCameraOf(path, info);
 }
 
 // The mean over all images.
@@ -313,64 +352,42 @@ double RateOf(const TopicImages& topic) {
   return topic.images.size() < 2 ? kUsual : static_cast<double>(topic.images.size() - 1) / seconds;
 }
 
-// Whether the images of a topic are rectified already, by the names of ROS's image_proc. Their
-// CameraInfo is that of the raw images, so it does not tell.
-bool IsRectifiedTopic(const IndexedTopic& topic) {
-  return topic.name.find("rect") != std::string::npos;
-}
-
-// The calibration of rectified images: the left half of the projection P.
-CameraCalibration RectifiedCalibrationOf(const fs::path& path, const IndexedTopic& topic,
-                                         double frames_per_second) {
-  const std::array<double, 12>& p = topic.camera->p;
-  if (!(p[0] > 0.0)) {
-    throw InputError(
-        fmt::format("{}: {}: the camera is not rectified, its matrix P is 0; expected "
-                    "--settings FILE",
-                    path.string(), ShowText(topic.name)));
+// The rotation that rectifies the images of a topic; none if they are rectified.
+Eigen::Quaterniond RectifyingRotation(const fs::path& path, const IndexedTopic& info,
+                                      const IndexedTopic& images) {
+  if (IsRectifiedTopic(images)) {
+    return Eigen::Quaterniond::Identity();
   }
-  return {.camera = {.fx = p[0],
-                     .fy = p[5],
-                     .cx = p[2],
-                     .cy = p[6],
-                     .width = static_cast<int>(topic.camera->width),
-                     .height = static_cast<int>(topic.camera->height)},
-          .frames_per_second = frames_per_second};
-}
-
-Eigen::Quaterniond RectifyingRotation(const fs::path& path, const IndexedTopic& topic) {
   const Eigen::Matrix3d matrix =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(topic.camera->r.data());
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.camera->r.data());
   const auto rotation = RotationOf(matrix);
   if (!rotation) {
-    throw InputError(fmt::format("{}: {}: its matrix R is no rotation; expected --settings FILE",
-                                 path.string(), ShowText(topic.name)));
+    FailInfo(path, info, "its matrix R is no rotation");
   }
   return *rotation;
 }
 
 // The pair of two CameraInfo. The projections are those of rectified images; the fourth column of
-// the right one is minus the baseline times the focal length.
+// the right one is minus the baseline times the focal length. Adds how they were read to `notes`.
 StereoCalibration PairOf(const fs::path& path, const std::array<const IndexedTopic*, 2>& infos,
-                         bool is_rectified, double frames_per_second) {
+                         const std::array<const IndexedTopic*, 2>& images,
+                         std::vector<std::string>& notes) {
+  const ReadCamera left = CameraOfInfo(path, *infos[0], *images[0]);
+  const ReadCamera right = CameraOfInfo(path, *infos[1], *images[1]);
+  notes.push_back(fmt::format("cameras: {} ({}) and {} ({})", ShowText(infos[0]->name), left.note,
+                              ShowText(infos[1]->name), right.note));
   StereoCalibration pair;
-  const auto camera_of = [&](const IndexedTopic& topic) {
-    return (is_rectified ? RectifiedCalibrationOf : CalibrationOf)(path, topic, frames_per_second)
-        .camera;
-  };
-  pair.left = camera_of(*infos[0]);
-  pair.right = camera_of(*infos[1]);
+  pair.left = left.camera;
+  pair.right = right.camera;
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
   const std::array<double, 12>& left_p = infos[0]->camera->p;
   const std::array<double, 12>& right_p = infos[1]->camera->p;
   if (left_p[0] > 0.0 && right_p[0] > 0.0) {
-    pair.right_from_left.translation.x() = right_p[3] / right_p[0] - left_p[3] / left_p[0];
+    translation.x() = right_p[3] / right_p[0] - left_p[3] / left_p[0];
   }
-  if (!is_rectified) {
-    const Eigen::Quaterniond left = RectifyingRotation(path, *infos[0]);
-    const Eigen::Quaterniond right = RectifyingRotation(path, *infos[1]);
-    pair.right_from_left = Rigid3{right.inverse(), Eigen::Vector3d::Zero()} *
-                           Rigid3{left, pair.right_from_left.translation};
-  }
+  pair.right_from_left =
+      Rigid3{RectifyingRotation(path, *infos[1], *images[1]).inverse(), Eigen::Vector3d::Zero()} *
+      Rigid3{RectifyingRotation(path, *infos[0], *images[0]), translation};
   return pair;
 }
 
@@ -421,8 +438,9 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
   }
   if (options.need_camera) {
     const IndexedTopic& info = ChooseInfoTopic(index, images, options.info_topic, kInfoOption);
-    sequence.camera = CalibrationOf(path, info, RateOf(colour));
-    sequence.notes.push_back(fmt::format("camera: {}", ShowText(info.name)));
+    ReadCamera read = CameraOfInfo(path, info, images);
+    sequence.camera = {.camera = read.camera, .frames_per_second = RateOf(colour)};
+    sequence.notes.push_back(fmt::format("camera: {}, {}", ShowText(info.name), read.note));
   }
   const auto loader = std::make_shared<BagLoader>(std::move(bags), std::move(colour),
                                                   std::move(depth), options.float_units);
@@ -464,10 +482,8 @@ BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
         ChooseInfoTopic(index, *topics[1], options.right_info_topic, kRightInfoOption);
     pairs.images.choices["info_topic"] = left.name;
     pairs.images.choices["right_info_topic"] = right.name;
-    opened.notes.push_back(
-        fmt::format("cameras: {} and {}", ShowText(left.name), ShowText(right.name)));
     rectifier = std::make_shared<const StereoRectifier>(
-        PairOf(path, {&left, &right}, IsRectifiedTopic(*topics[0]), rate), path.string());
+        PairOf(path, {&left, &right}, topics, opened.notes), path.string());
     pairs.calibration = CameraCalibration{rectifier->camera(), rate};
   }
   const std::vector<double> of_left = StampsOfTopic(both[0]);

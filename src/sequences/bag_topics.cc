@@ -13,6 +13,7 @@
 
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "util/ascii.h"
 #include "util/lower_case.h"
 #include "util/shown_text.h"
 
@@ -237,6 +238,21 @@ BagIndex IndexBags(const std::filesystem::path& path,
   return index;
 }
 
+bool IsRectifiedTopic(const IndexedTopic& topic) {
+  const std::string base = LowerCase(BaseName(topic));
+  std::string word;
+  bool is_rectified = false;
+  for (const char c : base.substr(base.rfind('/') + 1) + '_') {
+    if (IsLetter(c)) {
+      word += c;
+    } else {  // a digit ends a word too: image_rect0
+      is_rectified = is_rectified || word == "rect" || word == "rectified";
+      word.clear();
+    }
+  }
+  return is_rectified;
+}
+
 const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
                                      const std::string& name, const char* option) {
   const char* const what = kind == BagImageKind::kColour ? "colour" : "depth";
@@ -291,7 +307,7 @@ std::array<const IndexedTopic*, 2> ChoosePairTopics(const BagIndex& index, const
   std::erase_if(pairs, [](const auto& pair) {
     return pair[0] == nullptr || pair[1] == nullptr || pair[0] == pair[1];
   });
-  const auto is_raw = [](const auto& pair) { return !HasAny(pair[0]->name, {"rect"}); };
+  const auto is_raw = [](const auto& pair) { return !IsRectifiedTopic(*pair[0]); };
   if (pairs.size() > 1 && std::count_if(pairs.begin(), pairs.end(), is_raw) + 1 ==
                               static_cast<std::ptrdiff_t>(pairs.size())) {
     std::erase_if(pairs, is_raw);

@@ -59,9 +59,14 @@ BagIndex IndexBags(const std::filesystem::path& path,
 const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
                                      const std::string& name, const char* option);
 
+// Whether the images of a topic are rectified already, by the names of ROS's image_proc: the last
+// part of the name has the word "rect" or "rectified", as in /camera/rgb/image_rect_color. The
+// CameraInfo beside such a topic has K and the distortion of the raw images.
+bool IsRectifiedTopic(const IndexedTopic& topic);
+
 // The topics of the left and the right images of a pair, which may be named. Otherwise their names
 // differ only by left and right, infra1 and infra2, cam0 and cam1 or the like. If several pairs
-// do, it is the only one that is rectified by its name. Throws InputError like ChooseImageTopic().
+// do, it is the only one that IsRectifiedTopic(). Throws InputError like ChooseImageTopic().
 std::array<const IndexedTopic*, 2> ChoosePairTopics(const BagIndex& index, const std::string& left,
                                                     const std::string& right,
                                                     const char* left_option,

@@ -172,14 +172,18 @@ void AddStates(const fs::path& root, const std::optional<Rigid3>& body_from_cam,
 
 // The images have no depth, so those of 16 bits are images too.
 void LoadImages(ImageSequence& sequence) {
-  constexpr int kMostBits = 16;
-  sequence.load = [](const FramePaths& frame, const PinholeCamera& camera) {
-    ImageInput image{frame.timestamp, ReadGreyImage(frame.image, kMostBits), cv::Mat()};
+  std::vector<fs::path> images;
+  for (const FramePaths& frame : sequence.frames) {
+    images.push_back(frame.image);
+  }
+  const uint16_t brightest = BrightestOf(images);
+  sequence.load = [brightest](const FramePaths& frame, const PinholeCamera& camera) {
+    ImageInput image{frame.timestamp, ReadGreyImage(frame.image, brightest), cv::Mat()};
     CheckImageSize(frame.image.string(), image.grey, camera);
     return image;
   };
-  sequence.load_colour = [](const FramePaths& frame) {
-    return ReadColourImage(frame.image, kMostBits);
+  sequence.load_colour = [brightest](const FramePaths& frame) {
+    return ReadColourImage(frame.image, brightest);
   };
 }
 

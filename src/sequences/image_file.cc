@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/read_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "sequences/eight_bits.h"
 #include "sequences/image_header.h"
 #include "sequences/jpeg_codec.h"
 #include "sequences/png_codec.h"
@@ -32,10 +36,11 @@ std::string ReadImageFile(const std::filesystem::path& path) {
 }
 
 void CheckSize(const std::filesystem::path& path, const ImageHeader& header) {
-  if (header.width == 0 || header.height == 0 || header.width > kMostImagePixels ||
-      header.width * header.height > kMostImagePixels) {
-    Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", header.width,
-                           header.height, kMostImagePixels / 1'000'000));
+  if (header.width == 0 || header.height == 0 || header.width > kMostImageSide ||
+      header.height > kMostImageSide || header.width * header.height > kMostImagePixels) {
+    Fail(path,
+         fmt::format("has a size of {}x{} px, expected up to {} million px, and up to {} on a side",
+                     header.width, header.height, kMostImagePixels / 1'000'000, kMostImageSide));
   }
 }
 
@@ -74,16 +79,39 @@ cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, c
   });
 }
 
-cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, PixelForm form,
-                   int most_bits = 8) {
+// Whether these are the bytes of a PNG with 16 bits per channel. Its first chunk has them at a
+// fixed place.
+bool IsSixteenBitPng(std::string_view bytes) {
+  constexpr size_t kBitsAt = 24;
+  return bytes.starts_with(kPngSignature) && bytes.size() > kBitsAt && bytes[kBitsAt] == 16;
+}
+
+cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, PixelForm form) {
   return Decode(path, bytes, form, [&](const ImageHeader& header) {
-    if (header.bits > most_bits) {
+    if (header.bits > 8) {
       Fail(path,
            fmt::format("has {} bits per channel, expected an image with 8 bits, grey or in colour; "
                        "if this is no depth image, it must be converted",
                        header.bits));
     }
   });
+}
+
+cv::Mat DecodeAnyBits(const std::filesystem::path& path, std::string_view bytes, PixelForm form,
+                      std::optional<uint16_t> brightest) {
+  if (!brightest || !IsSixteenBitPng(bytes)) {
+    return Decode8Bit(path, bytes, form);
+  }
+  const cv::Mat image =
+      To8Bits(Decode(path, bytes, PixelForm::kSixteenBit, [](const ImageHeader&) {}), *brightest);
+  if (form == PixelForm::kGrey) {
+    return image.channels() == 1 ? image : GreyLikePng(image, 2);
+  }
+  cv::Mat colour = image;
+  if (image.channels() == 1) {
+    cv::merge(std::vector<cv::Mat>(3, image), colour);
+  }
+  return colour;
 }
 
 }  // namespace
@@ -100,12 +128,36 @@ cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view byt
   return Decode16Bit(name, bytes, "depth");
 }
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int most_bits) {
-  return Decode8Bit(path, ReadImageFile(path), PixelForm::kGrey, most_bits);
+cv::Mat ReadGreyImage(const std::filesystem::path& path, std::optional<uint16_t> brightest) {
+  return DecodeAnyBits(path, ReadImageFile(path), PixelForm::kGrey, brightest);
 }
 
-cv::Mat ReadColourImage(const std::filesystem::path& path, int most_bits) {
-  return Decode8Bit(path, ReadImageFile(path), PixelForm::kColour, most_bits);
+cv::Mat ReadColourImage(const std::filesystem::path& path, std::optional<uint16_t> brightest) {
+  return DecodeAnyBits(path, ReadImageFile(path), PixelForm::kColour, brightest);
+}
+
+uint16_t BrightestOf(std::span<const std::filesystem::path> images) {
+  constexpr size_t kMostRead = 64;
+  constexpr uint16_t kWhite = 65'535;
+  const size_t count = std::min(images.size(), kMostRead);
+  double brightest = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    try {
+      const std::filesystem::path& path = images[i * images.size() / count];
+      const std::string bytes = ReadImageFile(path);
+      if (IsSixteenBitPng(bytes)) {
+        double largest = 0.0;
+        cv::minMaxLoc(
+            Decode(path, bytes, PixelForm::kSixteenBit, [](const ImageHeader&) {}).reshape(1),
+            nullptr, &largest);
+        brightest = std::max(brightest, largest);
+      } else if (i == 0) {
+        return kWhite;
+      }
+    } catch (const InputError&) {
+    }
+  }
+  return brightest > 0.0 ? static_cast<uint16_t>(brightest) : kWhite;
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) {

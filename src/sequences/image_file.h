@@ -4,26 +4,36 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace hullslam {
 
 constexpr uint64_t kMostImagePixels = 64'000'000;
+constexpr uint64_t kMostImageSide = 65'535;  // px, as in a JPEG; each row has a cost of its own
 
 // All functions throw InputError with the file and the reason if the file is missing, empty, cut
-// off, neither PNG nor JPEG, larger than 512 MB or kMostImagePixels, or cannot be decoded.
+// off, neither PNG nor JPEG, larger than 512 MB or than these limits, or cannot be decoded.
 // (Flipped bits inside a JPEG cannot be detected.)
 
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
 // calibration of the camera refers to the pixels as stored. Images with 16 bits per channel are
-// errors too: they may be depth images, and if they use only a few of their bits, they would become
-// black. With `most_bits` 16, for data sets without depth, the upper 8 bits are taken.
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int most_bits = 8);
+// errors too: they may be depth images. With `brightest`, for data sets without depth, they become
+// 8 bits by To8Bits() (eight_bits.h).
+cv::Mat ReadGreyImage(const std::filesystem::path& path,
+                      std::optional<uint16_t> brightest = std::nullopt);
 
 // A PNG or JPEG image in colour, CV_8UC3 with blue first; a grey image has three equal channels.
 // Images with 16 bits per channel are as above.
-cv::Mat ReadColourImage(const std::filesystem::path& path, int most_bits = 8);
+cv::Mat ReadColourImage(const std::filesystem::path& path,
+                        std::optional<uint16_t> brightest = std::nullopt);
+
+// The largest value in the images of a camera, from up to 64 of them that lie evenly in the list.
+// Only images of 16 bits are read; the result is 65535 if the first one has 8. Images that cannot
+// be read are left out: they are reported when they are loaded.
+uint16_t BrightestOf(std::span<const std::filesystem::path> images);
 
 // A depth image with unchanged values, CV_16UC1. It is an error if the image does not have 16 bits
 // or has several channels.

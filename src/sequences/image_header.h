@@ -19,8 +19,8 @@ struct ImageHeader {
 // is not accepted.
 using HeaderCheck = std::function<void(const ImageHeader&)>;
 
-// The pixels that a decoder returns: CV_8UC1, CV_8UC3 with blue first, or CV_16UC1. Only images of
-// one channel with 16 bits can be decoded to the last one.
+// The pixels that a decoder returns: CV_8UC1, CV_8UC3 with blue first, or CV_16UC1 and CV_16UC3 as
+// the image has them. Only images of 16 bits can be decoded to the last ones.
 enum class PixelForm { kGrey, kColour, kSixteenBit };
 
 }  // namespace hullslam

@@ -29,6 +29,7 @@ struct JpegFailure {
   std::jmp_buf target = {};
   std::array<char, JMSG_LENGTH_MAX> text = {};
   bool is_cut_off = false;
+  bool has_too_many_scans = false;
 };
 
 JpegFailure& FailureOf(j_common_ptr jpeg) { return *reinterpret_cast<JpegFailure*>(jpeg->err); }
@@ -44,6 +45,17 @@ JpegFailure& FailureOf(j_common_ptr jpeg) { return *reinterpret_cast<JpegFailure
 void TakeWarning(j_common_ptr jpeg, int level) {
   if (level < 0 && FailureOf(jpeg).manager.msg_code == JWRN_JPEG_EOF) {
     FailureOf(jpeg).is_cut_off = true;
+    JumpOut(jpeg);
+  }
+}
+
+// Each scan of a progressive JPEG goes through all of its pixels, but a scan may be a few bytes. So
+// libjpeg-turbo advises programs to limit their number. Encoders make 10, seldom twice as many.
+constexpr int kMostScans = 50;
+
+void LimitScans(j_common_ptr jpeg) {
+  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > kMostScans) {
+    FailureOf(jpeg).has_too_many_scans = true;
     JumpOut(jpeg);
   }
 }
@@ -69,6 +81,8 @@ class JpegReader {
       Fail();
     }
     jpeg_create_decompress(&jpeg_);
+    jpeg_.progress = &progress_;
+    progress_.progress_monitor = LimitScans;
     jpeg_mem_src(&jpeg_, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
     jpeg_read_header(&jpeg_, TRUE);
     return {.width = jpeg_.image_width,
@@ -95,10 +109,15 @@ class JpegReader {
     if (failure_.is_cut_off) {
       throw DecodeError("is cut off, the end of the image is missing");
     }
+    if (failure_.has_too_many_scans) {
+      throw DecodeError("has more than " + std::to_string(kMostScans) +
+                        " scans, expected a JPEG of a camera, which has 1 to 20");
+    }
     throw DecodeError(std::string("is broken and cannot be decoded: ") + failure_.text.data());
   }
 
   JpegFailure failure_;
+  jpeg_progress_mgr progress_ = {};
   jpeg_decompress_struct jpeg_ = {};
 };
 

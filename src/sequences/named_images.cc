@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include "files/natural_order.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
+#include "util/ascii.h"
 #include "util/lower_case.h"
 
 namespace hullslam {
@@ -82,9 +82,7 @@ void CheckSteps(const fs::path& folder, const NamedImages& images, double frames
 }  // namespace
 
 std::string_view LastNumber(std::string_view name) {
-  const auto is_digit = [&](size_t i) {
-    return std::isdigit(static_cast<unsigned char>(name[i])) != 0;
-  };
+  const auto is_digit = [&](size_t i) { return IsDigit(name[i]); };
   size_t end = name.size();
   while (end > 0 && !is_digit(end - 1)) {
     --end;

@@ -21,6 +21,42 @@ struct PngMessage {
   std::array<char, 128> text = {};
 };
 
+constexpr const char* kCutOff = "is cut off, the end of the image is missing";
+constexpr const char* kBroken = "is broken and cannot be decoded: ";
+
+uint32_t NumberAt(std::string_view bytes, size_t at) {
+  uint32_t number = 0;
+  for (const char byte : bytes.substr(at, 4)) {
+    number = number << 8 | static_cast<uint8_t>(byte);
+  }
+  return number;
+}
+
+// Checks that all chunks are there, up to the last one, and that their sums are right. A chunk is
+// its length, its name, its data, and the sum of name and data. png_read_end() is not used: it
+// decompresses all that follows the pixels in their chunks, a gigabyte for each megabyte.
+void CheckChunks(std::string_view bytes) {
+  constexpr size_t kSignature = 8;
+  constexpr size_t kFrame = 12;  // a chunk without its data
+  for (size_t at = kSignature;;) {
+    const size_t left = bytes.size() - at;
+    if (left < kFrame || NumberAt(bytes, at) > left - kFrame) {
+      throw DecodeError(kCutOff);
+    }
+    const size_t length = NumberAt(bytes, at);
+    const std::string_view summed = bytes.substr(at + 4, 4 + length);
+    const auto sum =
+        crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<uInt>(summed.size()));
+    if (sum != NumberAt(bytes, at + 8 + length)) {
+      throw DecodeError(std::string(kBroken) + "a sum of its bytes is wrong");
+    }
+    if (summed.starts_with("IEND")) {
+      return;
+    }
+    at += kFrame + length;
+  }
+}
+
 [[noreturn]] void KeepPngMessage(png_structp png, png_const_charp text) {
   auto& message = *static_cast<PngMessage*>(png_get_error_ptr(png));
   std::snprintf(message.text.data(), message.text.size(), "%s", text);
@@ -28,8 +64,6 @@ struct PngMessage {
 }
 
 void IgnorePngWarning(png_structp /*png*/, png_const_charp /*text*/) {}
-
-constexpr const char* kCutOff = "is cut off, the end of the image is missing";
 
 class PngReader {
  public:
@@ -51,6 +85,7 @@ class PngReader {
     png_set_read_fn(png_, this, ReadBytes);
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the caller has a limit
+    SkipText();
     png_read_info(png_, info_);
     return {.width = png_get_image_width(png_, info_),
             .height = png_get_image_height(png_, info_),
@@ -70,14 +105,29 @@ class PngReader {
     png_set_strip_alpha(png_);
     if (form != PixelForm::kSixteenBit) {
       Transform(form);
+    } else if ((png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) != 0) {
+      png_set_bgr(png_);
     }
     png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     png_read_image(png_, rows.data());
-    png_read_end(png_, nullptr);
   }
 
  private:
+  // Text and palettes for other programs are skipped as they are: a megabyte of them may be a
+  // gigabyte when it is decompressed. What may change values is read: gAMA, cHRM, sRGB and iCCP, of
+  // which there is one each.
+  void SkipText() {
+    static constexpr char kSkipped[] =  // five bytes per name, with the zero
+        "eXIf\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sCAL\0sPLT\0tEXt\0tIME\0zTXt";
+    constexpr int kNameBytes = 5;
+    constexpr png_alloc_size_t kMostChunkBytes = 4'000'000;
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER,
+                                reinterpret_cast<png_const_bytep>(kSkipped),
+                                sizeof(kSkipped) / kNameBytes);
+    png_set_chunk_malloc_max(png_, kMostChunkBytes);
+  }
+
   static void ReadBytes(png_structp png, png_bytep bytes, size_t count) {
     auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
     if (count > reader.rest_.size()) {
@@ -112,7 +162,7 @@ class PngReader {
     if (is_cut_off_) {
       throw DecodeError(kCutOff);
     }
-    throw DecodeError(std::string("is broken and cannot be decoded: ") + message_.text.data());
+    throw DecodeError(std::string(kBroken) + message_.text.data());
   }
 
   std::string_view rest_;
@@ -179,12 +229,13 @@ cv::Mat DecodePng(std::string_view bytes, PixelForm form, const HeaderCheck& che
   PngReader reader(bytes);
   const ImageHeader header = reader.ReadHeader();
   check(header);
-  const int type = form == PixelForm::kSixteenBit ? CV_16UC1
+  const int type = form == PixelForm::kSixteenBit ? (header.channels < 3 ? CV_16UC1 : CV_16UC3)
                    : form == PixelForm::kColour   ? CV_8UC3
                                                   : CV_8UC1;
   cv::Mat image(static_cast<int>(header.height), static_cast<int>(header.width), type);
   std::vector<uint8_t*> rows = RowsOf(image);
   reader.ReadPixels(form, rows);
+  CheckChunks(bytes);
   return image;
 }
 

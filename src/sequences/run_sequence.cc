@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdlib>
 #include <string>
 
+#include "files/text_rows.h"
 #include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
@@ -34,6 +34,17 @@ struct Reopening {
   std::string Choice(const char* name) const {
     const auto found = run.choices.find(name);
     return found != run.choices.end() ? found->second : std::string();
+  }
+
+  // The number that the run chose, or the other one if it chose none.
+  double Number(const char* name, double otherwise) const {
+    const std::string text = Choice(name);
+    double value = otherwise;
+    if (!text.empty() && !ParseFinite(text, value)) {
+      throw InputError(
+          fmt::format("{} in summary.json is '{}', expected a number", name, ShowText(text)));
+    }
+    return value;
   }
 };
 
@@ -73,24 +84,20 @@ ImageSequence OpenKittiLeft(const Reopening& opening) {
 
 ImageSequence OpenPairs(const Reopening& opening) {
   const std::string calibration = opening.Choice("calibration");
-  const std::string rate = opening.Choice("frames_per_second");
   StereoFolderOptions options;
-  if (!rate.empty()) {
-    options.frames_per_second = std::strtod(rate.c_str(), nullptr);
-  }
+  options.frames_per_second = opening.Number("frames_per_second", options.frames_per_second);
   options.rectifier = RectifierOf(calibration);
   return OpenStereoFolder(opening.path, options);
 }
 
 ImageSequence OpenBag(const Reopening& opening) {
-  const std::string units = opening.Choice("float_units");
   return OpenBagSequence(opening.path,
                          {.image_topic = opening.Choice("image_topic"),
                           .depth_topic = opening.Choice("depth_topic"),
                           .use_depth = opening.use_depth,
                           .need_camera = false,
                           .use_recording_times = opening.Choice("times") == "recording",
-                          .float_units = units.empty() ? 1.0 : std::strtod(units.c_str(), nullptr)})
+                          .float_units = opening.Number("float_units", 1.0)})
       .images;
 }
 

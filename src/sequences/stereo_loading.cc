@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "hullslam/util/error.h"
 #include "sequences/image_file.h"
@@ -11,8 +13,6 @@
 
 namespace hullslam {
 namespace {
-
-constexpr int kMostBits = 16;  // a pair has no depth images
 
 using Rectifier = std::shared_ptr<const StereoRectifier>;
 
@@ -55,16 +55,23 @@ cv::Mat Half(const cv::Mat& both, int half) {
 
 }  // namespace
 
+// A pair has no depth images, so those of 16 bits are images too.
 void LoadPairs(Rectifier rectifier, ImageSequence& sequence) {
-  sequence.load = [rectifier](const FramePaths& frame, const PinholeCamera& camera) {
-    const cv::Mat left = ReadGreyImage(frame.image, kMostBits);
-    const cv::Mat right = ReadGreyImage(frame.right, kMostBits);
+  std::vector<std::filesystem::path> images;
+  for (const FramePaths& frame : sequence.frames) {
+    images.push_back(frame.image);
+    images.push_back(frame.right);
+  }
+  const uint16_t brightest = BrightestOf(images);
+  sequence.load = [rectifier, brightest](const FramePaths& frame, const PinholeCamera& camera) {
+    const cv::Mat left = ReadGreyImage(frame.image, brightest);
+    const cv::Mat right = ReadGreyImage(frame.right, brightest);
     CheckImageSize(frame.image.string(), left, camera);
     CheckImageSize(frame.right.string(), right, camera);
     return Rectify(rectifier, frame.timestamp, left, right);
   };
-  sequence.load_colour = [rectifier](const FramePaths& frame) {
-    const cv::Mat image = ReadColourImage(frame.image, kMostBits);
+  sequence.load_colour = [rectifier, brightest](const FramePaths& frame) {
+    const cv::Mat image = ReadColourImage(frame.image, brightest);
     return rectifier != nullptr ? rectifier->RectifyLeft(image) : image;
   };
   FitMasks(rectifier, sequence);

@@ -5,12 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 #include "settings/yaml_settings.h"
+#include "util/ascii.h"
 #include "util/edit_distance.h"
 #include "util/shown_text.h"
 
@@ -99,7 +99,7 @@ std::string BaseOf(const fs::path& file, const WrittenSetting& setting) {
   constexpr size_t kLongestBase = 500;
   const std::string& base = SingleValue(setting);
   if (base.size() > kLongestBase ||
-      std::any_of(base.begin(), base.end(), [](unsigned char c) { return std::iscntrl(c) != 0; })) {
+      std::any_of(base.begin(), base.end(), IsControl)) {
     throw InputError(fmt::format("{}: {} is '{}', expected the name of a preset or a file",
                                  setting.origin, kBase, ShowText(base)));
   }

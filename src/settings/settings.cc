@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -26,6 +25,7 @@
 #include "settings/stereo_settings.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
+#include "util/ascii.h"
 #include "util/lower_case.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
@@ -231,10 +231,10 @@ int TumCamera(std::string name) {
   for (const std::string_view mark : {"freiburg", "fr"}) {
     const size_t at = name.find(mark);
     const size_t digit = at + mark.size();
-    const bool begins_word = at == 0 || (at != std::string::npos && !std::isalnum(name[at - 1]));
+    const bool begins_word = at == 0 || (at != std::string::npos && !(IsDigit(name[at - 1]) || IsLetter(name[at - 1])));
     const bool is_camera =
         begins_word && digit < name.size() && name[digit] >= '1' && name[digit] <= '3';
-    if (is_camera && (digit + 1 == name.size() || !std::isdigit(name[digit + 1]))) {
+    if (is_camera && (digit + 1 == name.size() || !IsDigit(name[digit + 1]))) {
       return name[digit] - '0';
     }
   }

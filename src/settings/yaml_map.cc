@@ -8,13 +8,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
+#include "util/ascii.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -28,8 +28,8 @@ constexpr size_t kMostFileBytes = 1'000'000;
 // the value without a blank; npos if there is none.
 size_t ColonWithoutBlank(std::string_view line) {
   const size_t begin = std::min(line.find_first_not_of(' '), line.size());
-  const auto* const end = std::find_if(line.begin() + begin, line.end(), [](unsigned char c) {
-    return std::isalnum(c) == 0 && c != '.' && c != '_';
+  const auto* const end = std::find_if(line.begin() + begin, line.end(), [](char c) {
+    return !IsDigit(c) && !IsLetter(c) && c != '.' && c != '_';
   });
   const size_t colon = static_cast<size_t>(end - line.begin());
   const bool has_value = colon > begin && colon + 1 < line.size() && line[colon] == ':' &&

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "view/base64.h"
+#include "files/base64.h"
 
 namespace hullslam {
 namespace {

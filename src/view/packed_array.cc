@@ -4,7 +4,7 @@
 #include <bit>
 #include <string>
 
-#include "view/base64.h"
+#include "files/base64.h"
 
 namespace hullslam {
 namespace {

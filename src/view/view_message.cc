@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "files/base64.h"
 #include "results/json_text.h"
 #include "util/printable.h"
-#include "view/base64.h"
 #include "view/packed_array.h"
 
 namespace hullslam {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "support/comma_locale.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -14,6 +15,18 @@ namespace {
 TEST(JsonFile, IsParsed) {
   const TemporaryFolder folder;
   EXPECT_EQ(ReadJson(folder.Write("f.json", "{\"a\": [1, 2]}"))["a"][1], 2);
+}
+
+TEST(JsonFile, TheDecimalPointOfTheProgramDoesNotMatter) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("f.json", "[1.5, -2.25e-3, 1234.5]");
+  for (const char* const point : {",", "<U066B>"}) {
+    const CommaLocale locale(point);
+    const nlohmann::json json = ReadJson(path);
+    EXPECT_EQ(json[0], 1.5) << point;
+    EXPECT_EQ(json[1], -2.25e-3) << point;
+    EXPECT_EQ(json.dump(), "[1.5,-0.00225,1234.5]") << point;
+  }
 }
 
 TEST(JsonFile, InvalidFilesAreReportedWithLineAndColumn) {

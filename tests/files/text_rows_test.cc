@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/comma_locale.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -36,6 +37,24 @@ std::vector<std::string> RowsOf(const std::filesystem::path& path) {
     rows.push_back(text);
   });
   return rows;
+}
+
+TEST(TextRows, TheDecimalPointOfTheProgramDoesNotMatter) {
+  const TemporaryFolder folder;
+  const CommaLocale comma;
+  ForEachRow(folder.Write("a.txt", "1234.5 -2.5e-3\n"), [](const TextRow& row) {
+    EXPECT_EQ(row.Number(0, "a"), 1234.5);
+    EXPECT_EQ(row.Number(1, "b"), -2.5e-3);
+  });
+}
+
+TEST(TextRows, AListOfNumbersHasAllOfThemAndNothingElse) {
+  Eigen::Vector3d values;
+  EXPECT_TRUE(ParseFinites(" 1.5 -2\t3e2", values));
+  EXPECT_EQ(values, Eigen::Vector3d(1.5, -2.0, 300.0));
+  for (const char* const text : {"", "1 2", "1 2 3 4", "1 2 x", "1 2 nan", "1 2 3x"}) {
+    EXPECT_FALSE(ParseFinites(text, values)) << text;
+  }
 }
 
 // Spreadsheets and scripts write a line with the names of the columns, with or without a mark.

@@ -6,6 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <vector>
+
+#include "hullslam/util/check.h"
 
 namespace hullslam {
 namespace {
@@ -104,6 +109,107 @@ TEST(MaskOutline, EllipsesKeepTheirSizeInEveryDirection) {
     }
     EXPECT_NEAR(sum / static_cast<double>(outlines[0].size()), 0.0, 0.1);
   }
+}
+
+// The outlines by OpenCV, on a lattice with twice the resolution whose points are the centres of
+// pixels, the middles of edges and the corners.
+std::vector<Outline> OutlinesByOpencv(const cv::Mat& mask) {
+  cv::Mat padded;
+  cv::copyMakeBorder(mask, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::Mat lattice = cv::Mat::zeros(2 * padded.rows, 2 * padded.cols, CV_8UC1);
+  for (int y = 0; y + 1 < lattice.rows; ++y) {
+    for (int x = 0; x + 1 < lattice.cols; ++x) {
+      int count = 0;
+      for (const int py : {y / 2, (y + 1) / 2}) {
+        for (const int px : {x / 2, (x + 1) / 2}) {
+          count += padded.at<uint8_t>(py, px) != 0 ? 1 : 0;
+        }
+      }
+      lattice.at<uint8_t>(y, x) = count >= 2 ? 1 : 0;
+    }
+  }
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(lattice, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+  std::vector<Outline> outlines;
+  for (const std::vector<cv::Point>& contour : contours) {
+    Outline& outline = outlines.emplace_back();
+    for (const cv::Point& point : contour) {
+      outline.emplace_back(0.5 * point.x - 1.0, 0.5 * point.y - 1.0);
+    }
+  }
+  return outlines;
+}
+
+// Dense ones have parts in the holes of other parts.
+TEST(MaskOutline, OutlinesOfAnyMaskAreThoseOfOpencv) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    cv::Mat mask(1 + i % 23, 1 + i % 37, CV_8UC1);
+    const unsigned inside = 1 + i % 9;  // of ten
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        mask.at<uint8_t>(y, x) = random() % 10 < inside ? 255 : 0;
+      }
+    }
+    ASSERT_EQ(FindMaskOutlines(mask), OutlinesByOpencv(mask)) << i << "\n" << mask;
+  }
+}
+
+TEST(MaskOutline, APartInAHoleIsNoOutlineHoweverDeep) {
+  cv::Mat mask(60, 60, CV_8UC1, cv::Scalar(0));
+  for (int i = 0; i < 12; ++i) {
+    cv::rectangle(mask, {2 * i, 2 * i, 60 - 4 * i, 60 - 4 * i}, cv::Scalar(i % 2 == 0 ? 255 : 0),
+                  cv::FILLED);
+  }
+  EXPECT_EQ(FindMaskOutlines(mask).size(), 1U);
+}
+
+TEST(LabelOutlines, EachNumberHasTheOutlinesOfItsPixels) {
+  std::mt19937 random(3);
+  for (const int type : {CV_8UC1, CV_16UC1, CV_32SC1}) {
+    for (const int block : {1, 3}) {
+      cv::Mat labels(31, 40, type, cv::Scalar(0));
+      for (int y = 0; y < labels.rows; y += block) {
+        for (int x = 0; x < labels.cols; x += block) {
+          const cv::Rect all(0, 0, labels.cols, labels.rows);
+          labels(cv::Rect(x, y, block, block) & all) =
+              cv::Scalar(static_cast<double>(random() % 4));
+        }
+      }
+      const auto found = FindLabelOutlines(labels);
+      EXPECT_EQ(found.size(), 3U) << "0 is no number";
+      for (const auto& [number, outlines] : found) {
+        EXPECT_EQ(outlines, OutlinesByOpencv(labels == number)) << number;
+      }
+    }
+  }
+  EXPECT_THROW(FindLabelOutlines(cv::Mat::zeros(3, 3, CV_32FC1)), CheckError);
+}
+
+TEST(LabelOutlines, NumbersMayBeLargeAndNegative) {
+  cv::Mat labels(8, 8, CV_32SC1, cv::Scalar(0));
+  labels(cv::Rect(2, 3, 4, 2)) = cv::Scalar(1'000'000);
+  labels(cv::Rect(0, 0, 1, 1)) = cv::Scalar(-7);
+  const auto found = FindLabelOutlines(labels);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found.at(1'000'000), OutlinesByOpencv(labels == 1'000'000));
+  EXPECT_EQ(found.at(-7), OutlinesByOpencv(labels == -7));
+}
+
+// The pixels of each number are all over the image. Looking for each number in its box would take
+// an hour.
+TEST(LabelOutlines, ManyScatteredNumbersAreFoundInOnePass) {
+  cv::Mat labels(480, 640, CV_16UC1);
+  cv::RNG(3).fill(labels, cv::RNG::UNIFORM, 0, 65536);
+  const auto found = FindLabelOutlines(labels);
+  EXPECT_GT(found.size(), 60'000U);
+  double area = 0.0;
+  for (const auto& [number, outlines] : found) {
+    for (const Outline& outline : outlines) {
+      area += std::abs(SignedArea(outline));
+    }
+  }
+  EXPECT_NEAR(area, 0.5 * 640 * 480, 100.0) << "nearly all are single pixels";
 }
 
 }  // namespace

@@ -66,6 +66,44 @@ TEST_F(JsonFolderTest, ShapesOfLabelMeAreOutlinesAndBoxes) {
   EXPECT_EQ(frame.without_area, 1U);
 }
 
+const char* const kPolygon =
+    R"({"shapes": [{"label": "cup", "points": [[1, 1], [9, 1], [1, 9]]}]})";
+
+// LabelMe keeps lists of labels, notes and the images themselves in the same folder.
+TEST_F(JsonFolderTest, OtherFilesBesideTheFilesOfFramesDoNotCount) {
+  Write("labels.txt", "cup\ntv\n");
+  Write("poses.txt", "0 0.5 0.5 0.5 0.5 0.5 0.5\n");
+  Write("config.json", R"({"a": 1})");
+  Write("1.5.png", "");
+  EXPECT_EQ(ReadJson(kPolygon).masks.size(), 1U);
+}
+
+TEST_F(JsonFolderTest, TheFileOfASingleFrameIsEnough) {
+  std::filesystem::remove(Path("2.5.json"));
+  Write("readme.txt", "the first image only");
+  EXPECT_EQ(ReadJson(kPolygon).masks.size(), 1U);
+  EXPECT_TRUE(ReadFrame(1).is_missing);
+}
+
+TEST_F(JsonFolderTest, TextFilesOfFramesAreTheirMasks) {
+  Write("1.5.txt", "0 0.1 0.1 0.2 0.1 0.2 0.2\n");
+  std::filesystem::remove(Path("2.5.json"));
+  Write("notes.json", R"({"a": 1})");
+  EXPECT_EQ(Open()->format(), "yolo-seg");
+}
+
+TEST_F(JsonFolderTest, TheInstancesOfAFileAreCounted) {
+  const FrameMasks frame = ReadJson(R"({"shapes": [
+    {"label": "cup", "group_id": 3, "points": [[1, 1], [9, 1], [1, 9]]},
+    {"label": "tip", "points": [[5, 5]], "shape_type": "point"},
+    {"label": "cup", "group_id": 3, "points": [[21, 1], [29, 1], [21, 9]]},
+    {"label": "tv", "points": [[41, 1], [49, 1], [41, 9]]}]})");
+  ASSERT_EQ(frame.masks.size(), 2U);
+  EXPECT_EQ(frame.masks[0].outlines.size(), 2U);
+  EXPECT_EQ(frame.without_area, 1U);
+  EXPECT_EQ(frame.rows, (std::vector<size_t>{0, 2}));
+}
+
 TEST_F(JsonFolderTest, BrokenFilesAreRefused) {
   ExpectRefused("[{", {"no valid JSON"});
   ExpectRefused("[{}]", {"[0]: has neither 'segmentation' nor 'bbox'"});

@@ -47,7 +47,7 @@ TEST_F(OpenMasksTest, AFolderWithoutMasksIsDescribed) {
   Write("notes.md", "");
   ExpectRefusal({Path().string(), "has neither text files nor PNG or JSON files"});
   Write("masks.json", "{}");
-  ExpectRefusal({"has a JSON file but no text files", "give the path of the JSON file"});
+  ExpectRefusal({"has a JSON file that is not named as a frame", "give the path of the file"});
   Write("1.5.png", "");
   ExpectRefusal({"PNG files but no classes.json", "label-png"});
   Write("classes.txt", "cup");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hullslam/masks/open_masks.h"
+#include "support/comma_locale.h"
 #include "support/square_mask.h"
 #include "support/temporary_folder.h"
 
@@ -35,6 +36,22 @@ TEST(YoloText, ReadersGiveTheSameMasks) {
   EXPECT_NEAR(read[0].score, 0.8765, 1e-4);
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_TRUE(read[0].outlines[0][i].isApprox(first.outlines[0][i], 1e-5));
+  }
+}
+
+TEST(YoloText, MasksAreRoundedAsTheirTextAlsoWithADecimalComma) {
+  std::vector<InstanceMask> masks = {Square("tv", 20.3, 30.7, 100.1)};
+  masks[0].score = 0.87654;
+  std::vector<InstanceMask> rounded = masks;
+  RoundAsYoloText({640, 480}, rounded);
+  const CommaLocale comma;
+  const std::vector<InstanceMask> read =
+      ReadBack(YoloText(masks, kClasses, {640, 480}), "yolo-seg");
+  RoundAsYoloText({640, 480}, masks);
+  ASSERT_EQ(read.size(), 1U);
+  for (const InstanceMask& other : {masks[0], read[0]}) {
+    EXPECT_EQ(other.score, 0.8765);
+    EXPECT_EQ(other.outlines, rounded[0].outlines);
   }
 }
 

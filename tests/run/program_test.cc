@@ -3,7 +3,9 @@
 
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
+#include <future>
 #include <limits>
 #include <new>
 
@@ -45,6 +47,27 @@ TEST(RunMain, SaysThatMemoryIsShort) {
   const auto run = [](int, char**) -> int { throw std::bad_alloc(); };
   EXPECT_EQ(RunMain(run, 0, nullptr), kFailed);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "error: there is not enough memory\n");
+}
+
+// Needs more than the limit of the stack; the result is of the first bytes.
+int UseStack(size_t bytes) {
+  volatile auto* const room = static_cast<volatile char*>(__builtin_alloca(bytes));
+  for (size_t i = 0; i < bytes; i += 1024) {
+    room[i] = 1;
+  }
+  return room[0];
+}
+
+TEST(CallWithStack, ASmallLimitOfTheStackDoesNotMatter) {
+  constexpr size_t kNeeded = 4 << 20;
+  pthread_attr_t small;
+  pthread_attr_init(&small);
+  pthread_attr_setstacksize(&small, 128 << 10);
+  pthread_setattr_default_np(&small);  // as after ulimit -s 128
+  EXPECT_EQ(CallWithStack([] { return UseStack(kNeeded); }), 1);
+  EXPECT_EQ(std::async(std::launch::async, [] { return UseStack(kNeeded); }).get(), 1);
+  EXPECT_EQ(CallWithStack([] { return 7; }), 7);
+  EXPECT_THROW(CallWithStack([]() -> int { throw InputError("a"); }), InputError);
 }
 
 }  // namespace

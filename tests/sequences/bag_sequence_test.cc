@@ -241,6 +241,41 @@ TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
                 {"'Inverse Brown Conrady' with 5"}, mono);
 }
 
+// The CameraInfo that ROS's image_proc republishes is that of the raw images: K and D. Undistorting
+// rectified images with them would bend them.
+TEST_F(BagSequenceTest, RectifiedImagesHaveTheProjectionAndNoDistortion) {
+  const auto open = [&](const std::string& topic, const std::vector<double>& distortion,
+                        double projected) {
+    MadeMessage image = Image(0, 10);
+    image.topic = topic;
+    return Open({{"/cam/camera_info", "sensor_msgs/CameraInfo", kStart,
+                  MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", distortion, 300.0, 0.0,
+                                 projected)},
+                 image},
+                {.use_depth = false});
+  };
+  const std::vector<double> bent = {0.1, 0.2, 0.0, 0.0, 0.0};
+  const BagSequence rectified = open("/cam/image_rect_color", bent, 280.0);
+  EXPECT_EQ(rectified.camera->camera.fx, 280.0);
+  EXPECT_EQ(rectified.camera->camera.fy, 280.0);
+  EXPECT_EQ(rectified.camera->camera.cx, 0.5 * (kBagWidth - 1));
+  EXPECT_EQ(rectified.camera->camera.cy, 0.5 * (kBagHeight - 1));
+  EXPECT_FALSE(rectified.camera->camera.IsDistorted());
+  EXPECT_EQ(rectified.notes.back(),
+            "camera: /cam/camera_info, rectified images by the name of their topic: P");
+  const BagSequence raw = open("/cam/direct_image", bent, 280.0);
+  EXPECT_EQ(raw.camera->camera.fx, 300.0);
+  EXPECT_EQ(raw.camera->camera.k1, 0.1);
+  EXPECT_EQ(raw.notes.back(), "camera: /cam/camera_info, raw images: K and D");
+  const BagSequence without_projection = open("/cam/image_rect", {}, 0.0);
+  EXPECT_EQ(without_projection.camera->camera.fx, 300.0);
+  EXPECT_NE(without_projection.notes.back().find("K, as P is 0"), std::string::npos);
+  ExpectInputError(
+      [&] { open("/cam/image_rect", bent, 0.0); },
+      {"a.mcap: /cam/camera_info: the images are rectified by the name of their topic, "
+       "but its matrix P is 0; expected --settings FILE"});
+}
+
 TEST_F(BagSequenceTest, ACutRecordingIsUsedUpToTheCut) {
   const std::string whole = MadeMcap(Usual(), "none");
   const auto file = folder_.Write("a.mcap", whole.substr(0, whole.size() - 3000));
@@ -293,6 +328,26 @@ TEST_F(BagPairsTest, TwoTopicsArePairedByTheirStamps) {
   EXPECT_NE(bag.warnings[0].find("1 of 4 images of /left/image"), std::string::npos);
   EXPECT_EQ(bag.images.unpaired, 1u);
   EXPECT_EQ(bag.images.choices.at("right_topic"), "/right/image");
+}
+
+// "direct" has the letters of "rect". The distortion of raw images must be undone.
+TEST_F(BagPairsTest, TheLastPartOfATopicSaysWhetherAPairIsRectified) {
+  const auto rectifier_note = [&](const std::string& folder, const std::string& name) {
+    std::vector<MadeMessage> messages = UsualPairs();
+    for (MadeMessage& message : messages) {
+      message.topic = folder + message.topic;
+      if (message.topic.ends_with("/image")) {
+        message.topic = message.topic.substr(0, message.topic.rfind('/') + 1) + name;
+      }
+    }
+    return OpenPairs(messages).notes.back();
+  };
+  EXPECT_EQ(rectifier_note("/direct_drive", "image"),
+            "cameras: /direct_drive/left/camera_info (raw images: K and D) and "
+            "/direct_drive/right/camera_info (raw images: K and D)");
+  EXPECT_EQ(rectifier_note("", "image_rect"),
+            "cameras: /left/camera_info (rectified images by the name of their topic: P) and "
+            "/right/camera_info (rectified images by the name of their topic: P)");
 }
 
 TEST_F(BagPairsTest, OtherSettingsNeedNoCamera) {

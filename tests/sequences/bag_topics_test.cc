@@ -79,6 +79,28 @@ TEST(BagTopicsTest, ThePairDiffersByOneWord) {
             "/left/image_rect /right/image_rect");
 }
 
+TEST(BagTopicsTest, TheLastPartOfTheNameSaysWhetherImagesAreRectified) {
+  for (const char* const name :
+       {"/camera/rgb/image_rect_color", "/left/image_rect", "/infra1/image_rect_raw", "image_rect",
+        "/left/Image_Rectified", "/rectified", "/cam/image_rect0", "/cam/rect.image"}) {
+    EXPECT_TRUE(IsRectifiedTopic(Colour(name))) << name;
+  }
+  for (const char* const name :
+       {"/camera/rgb/image_raw", "/direct_drive/left/image_raw", "/colour_corrected/image",
+        "/rect/left/image_raw", "/left_rect/image", "/cam/direct", "/cam/image_rectangle",
+        "/cam/"}) {
+    EXPECT_FALSE(IsRectifiedTopic(Colour(name))) << name;
+  }
+  EXPECT_TRUE(IsRectifiedTopic(Colour("/left/image_rect/compressed", true)));
+  EXPECT_FALSE(IsRectifiedTopic(Colour("/image_rect/left/compressed", true)));
+}
+
+TEST(BagTopicsTest, APairIsNotRectifiedByTheNameOfItsVehicle) {
+  EXPECT_EQ(PairOfTopics({Colour("/direct/left/raw"), Colour("/direct/right/raw"),
+                          Colour("/direct/left/image_rect"), Colour("/direct/right/image_rect")}),
+            "/direct/left/image_rect /direct/right/image_rect");
+}
+
 TEST(BagTopicsTest, ThePairCanBeNamed) {
   const std::vector<IndexedTopic> topics = {Colour("/left/a"), Colour("/left/b"), Colour("/other"),
                                             Colour("/right/a"), Colour("/right/b")};

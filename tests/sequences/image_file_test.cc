@@ -5,8 +5,10 @@
 
 #include <boost/crc.hpp>
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -113,6 +115,46 @@ TEST(ImageFile, AJpegMayHaveAnythingBehindItsEnd) {
   EXPECT_EQ(ReadGreyImage(path).size(), cv::Size(64, 48));
 }
 
+// Cameras of 10 to 14 bits write their values into 16 bits. The upper 8 of these are nearly black.
+TEST(ImageFile, TheBitsOfTheCameraAreReadIfItsBrightestValueIsKnown) {
+  const TemporaryFolder folder;
+  cv::Mat image = Ramp(CV_8UC1);
+  cv::Mat twelve;
+  image.convertTo(twelve, CV_16U, 16.0);
+  cv::Mat colour;
+  cv::merge(std::vector<cv::Mat>{twelve, twelve / 2, twelve / 4}, colour);
+  const auto grey_file = folder.Write("grey.png", EncodeImage(twelve, ".png"));
+  const auto colour_file = folder.Write("colour.png", EncodeImage(colour, ".png"));
+  EXPECT_EQ(cv::norm(ReadGreyImage(grey_file, 4095), image, cv::NORM_INF), 0.0);
+  std::vector<cv::Mat> channels;
+  cv::split(ReadColourImage(grey_file, 4095), channels);
+  EXPECT_EQ(cv::norm(channels[2], image, cv::NORM_INF), 0.0);
+  cv::split(ReadColourImage(colour_file, 4095), channels);
+  EXPECT_EQ(cv::norm(channels[0], image, cv::NORM_INF), 0.0);
+  EXPECT_LE(cv::norm(channels[2], image / 4, cv::NORM_INF), 1.0);
+  EXPECT_EQ(ReadGreyImage(colour_file, 4095).type(), CV_8UC1);
+  const auto eight = folder.Write("eight.png", EncodeImage(image, ".png"));
+  EXPECT_EQ(cv::norm(ReadGreyImage(eight, 4095), image, cv::NORM_INF), 0.0);
+}
+
+TEST(ImageFile, TheBrightestValueIsThatOfAllImages) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> images;
+  for (int i = 0; i < 200; ++i) {
+    cv::Mat image(4, 5, CV_16UC1, cv::Scalar(100));
+    image.at<uint16_t>(2, 3) = static_cast<uint16_t>(500 + i);
+    images.push_back(folder.Write(std::to_string(i) + ".png", EncodeImage(image, ".png")));
+  }
+  const int brightest = BrightestOf(images);
+  EXPECT_GT(brightest, 500 + 190) << "images at the end are read too";
+  EXPECT_EQ(BrightestOf(std::span(images).subspan(7, 3)), 509);
+  folder.Write("8.png", "broken");
+  EXPECT_EQ(BrightestOf(std::span(images).subspan(7, 3)), 509);
+  folder.Write("7.png", EncodeImage(Ramp(CV_8UC1), ".png"));
+  EXPECT_EQ(BrightestOf(std::span(images).subspan(7, 3)), 65'535) << "images of 8 bits";
+  EXPECT_EQ(BrightestOf({}), 65'535);
+}
+
 // A cut image may have a thumbnail with an end marker of its own.
 TEST(ImageFile, TheEndOfAThumbnailIsNotThatOfTheJpeg) {
   const TemporaryFolder folder;
@@ -152,6 +194,14 @@ TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
   jpeg.replace(frame + 5, 4, "\xea\x60\xea\x60");
   ExpectInputError([&] { ReadGreyImage(folder.Write("huge.jpg", jpeg)); },
                    {"huge.jpg", "60000x60000 px"});
+}
+
+TEST(ImageFile, ALongRowOrColumnIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("a.png", EncodeImage(cv::Mat(70'000, 1, CV_8UC1), ".png"));
+  ExpectInputError([&] { ReadGreyImage(path); },
+                   {"a.png: has a size of 1x70000 px, expected up to 64 million px, and up to "
+                    "65535 on a side"});
 }
 
 // The size of the file is checked before its content is read.

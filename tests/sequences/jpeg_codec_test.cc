@@ -140,5 +140,42 @@ TEST(JpegCodec, EveryMissingEndIsFound) {
   }
 }
 
+std::string Segment(char marker, const std::string& data) {
+  const size_t size = data.size() + 2;
+  return std::string{'\xff', marker, static_cast<char>(size >> 8), static_cast<char>(size)} + data;
+}
+
+// A progressive JPEG of 8x8 px in grey whose scans after the first one say that a block is zero.
+std::string JpegOfScans(int scans) {
+  std::string jpeg = "\xff\xd8" + Segment('\xdb', '\0' + std::string(64, '\x10')) +
+                     Segment('\xc2', std::string("\x08\0\x08\0\x08\x01\x01\x11\0", 9));
+  std::string lengths(16, '\0');
+  lengths[0] = 1;  // one code of one bit, for the symbol 0
+  jpeg += Segment('\xc4', '\0' + lengths + '\0') + Segment('\xc4', '\x10' + lengths + '\0');
+  const std::string bit = "\x7f";  // the code, and ones to the end of the byte
+  jpeg += Segment('\xda', std::string("\x01\x01\0\0\0\0", 6)) + bit;
+  for (int i = 1; i < scans; ++i) {
+    jpeg += Segment('\xda', std::string("\x01\x01\0\x01\x3f\0", 6)) + bit;
+  }
+  return jpeg + "\xff\xd9";
+}
+
+// A scan of a few bytes goes through all pixels.
+TEST(JpegCodec, TooManyScansAreRefused) {
+  for (const int scans : {1, 10, 50}) {
+    const cv::Mat image = DecodeJpeg(JpegOfScans(scans), PixelForm::kGrey, AcceptHeader);
+    EXPECT_EQ(cv::norm(image, cv::Mat(8, 8, CV_8UC1, cv::Scalar(128)), cv::NORM_INF), 0.0) << scans;
+  }
+  for (const int scans : {51, 5000}) {
+    try {
+      DecodeJpeg(JpegOfScans(scans), PixelForm::kGrey, AcceptHeader);
+      ADD_FAILURE() << scans;
+    } catch (const DecodeError& error) {
+      EXPECT_STREQ(error.what(),
+                   "has more than 50 scans, expected a JPEG of a camera, which has 1 to 20");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -2,6 +2,7 @@
 #include "sequences/png_codec.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -70,6 +71,81 @@ TEST(PngCodec, FilesAreThoseOfOpencv) {
   for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1, CV_16UC3}) {
     EXPECT_EQ(EncodePng(Noise(type)), EncodedByOpencv(Noise(type))) << type;
   }
+}
+
+TEST(PngCodec, SixteenBitsOfColourComeBack) {
+  const cv::Mat image = Noise(CV_16UC3);
+  ExpectEqual(DecodePng(EncodePng(image), PixelForm::kSixteenBit, kAnyHeader), image);
+}
+
+std::string Number(size_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0}) {
+    bytes += static_cast<char>(number >> shift & 255u);
+  }
+  return bytes;
+}
+
+std::string Chunk(const std::string& name, const std::string& data) {
+  const std::string summed = name + data;
+  const auto sum =
+      crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<uInt>(summed.size()));
+  return Number(data.size()) + summed + Number(sum);
+}
+
+std::string Deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+            reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 9);
+  packed.resize(size);
+  return packed;
+}
+
+constexpr size_t kFirstChunkEnds = 8 + 25;
+
+// Ten gigabytes of text in ten megabytes.
+TEST(PngCodec, TextIsNotDecompressed) {
+  const std::string zeros = Deflated(std::string(7'900'000, '\0'));
+  std::string text;
+  for (int i = 0; i < 600; ++i) {
+    text += Chunk("zTXt", std::string("k\0\0", 3) + zeros);
+    text += Chunk("iTXt", std::string("k\0\1\0\0\0", 6) + zeros);
+  }
+  const cv::Mat image = Noise(CV_8UC1);
+  std::string png = EncodePng(image);
+  png.insert(kFirstChunkEnds, text);
+  ExpectEqual(DecodePng(png, PixelForm::kGrey, kAnyHeader), image);
+}
+
+// A stream of so many megabytes of zeros, without its end: a block after which nothing refers to
+// what came before, again and again.
+std::string DeflatedZeros(int megabytes) {
+  const std::string zeros(1 << 20, '\0');
+  std::string packed(1 << 16, '\0');
+  z_stream stream = {};
+  deflateInit(&stream, 9);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(zeros.data()));
+  stream.avail_in = static_cast<uInt>(zeros.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  deflate(&stream, Z_FULL_FLUSH);
+  packed.resize(packed.size() - stream.avail_out);
+  deflateEnd(&stream);
+  constexpr size_t kHeader = 2;
+  const std::string block = packed.substr(kHeader);
+  for (int i = 1; i < megabytes; ++i) {
+    packed += block;
+  }
+  return packed;
+}
+
+// The chunks of pixels have thirty gigabytes more than the image.
+TEST(PngCodec, WhatFollowsThePixelsIsNotDecompressed) {
+  const cv::Mat image(31, 47, CV_8UC1, cv::Scalar(0));
+  const std::string png = EncodePng(image).substr(0, kFirstChunkEnds) +
+                          Chunk("IDAT", DeflatedZeros(30'000)) + Chunk("IEND", "");
+  ExpectEqual(DecodePng(png, PixelForm::kGrey, kAnyHeader), image);
 }
 
 TEST(PngCodec, TheHeaderIsShownBeforeThePixelsAreRead) {

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "support/comma_locale.h"
 #include "support/expect_error.h"
 #include "support/made_view.h"
 #include "support/temporary_folder.h"
@@ -47,6 +48,29 @@ TEST(RunSequence, PairsAreOpenedWithTheRateOfTheRun) {
   ASSERT_EQ(sequence.frames.size(), 2u);
   EXPECT_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 0.25);
   EXPECT_EQ(sequence.frames[1].right.filename(), "1.png");
+}
+
+TEST(RunSequence, ADecimalCommaOfTheProgramDoesNotMatter) {
+  const CommaLocale comma;
+  const TemporaryFolder folder;
+  for (const char* const name : {"left/0.png", "right/0.png", "left/1.png", "right/1.png"}) {
+    folder.Write(name, "");
+  }
+  const ImageSequence sequence = OpenRunSequence(
+      {.path = {}, .dataset = "stereo_folder", .choices = {{"frames_per_second", "2.5"}}},
+      folder.path(), MadeCamera());
+  EXPECT_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 0.4);
+}
+
+TEST(RunSequence, AChoiceThatIsNoNumberIsNamed) {
+  const TemporaryFolder folder;
+  ExpectInputError(
+      [&] {
+        OpenRunSequence(
+            {.path = {}, .dataset = "stereo_folder", .choices = {{"frames_per_second", "2,5"}}},
+            folder.path(), MadeCamera());
+      },
+      {"frames_per_second in summary.json is '2,5', expected a number"});
 }
 
 TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -107,11 +108,14 @@ inline std::string MadeCompressed(MessageCoding coding, uint64_t time, std::stri
 }
 
 // A sensor_msgs/CameraInfo with fx = fy = 300 and the principal point in the middle. It is
-// rectified and, if `baseline` (m) is not 0, the right camera of a pair.
+// rectified and, if `baseline` (m) is not 0, the right camera of a pair. The rectified images may
+// have another focal length.
 inline std::string MadeCameraInfo(MessageCoding coding, uint32_t width, uint32_t height,
                                   std::string_view model = "plumb_bob",
                                   const std::vector<double>& distortion = {0, 0, 0, 0, 0},
-                                  double focal_length = 300.0, double baseline = 0.0) {
+                                  double focal_length = 300.0, double baseline = 0.0,
+                                  std::optional<double> rectified_focal_length = std::nullopt) {
+  const double projected = rectified_focal_length.value_or(focal_length);
   MadeFields fields(coding);
   fields.PutHeader(0);
   fields.Put(height);
@@ -128,8 +132,8 @@ inline std::string MadeCameraInfo(MessageCoding coding, uint32_t width, uint32_t
   for (const double number : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) {
     fields.Put(number);
   }
-  for (const double number : {focal_length, 0.0, 0.5 * (width - 1), -baseline * focal_length, 0.0,
-                              focal_length, 0.5 * (height - 1), 0.0, 0.0, 0.0, 1.0, 0.0}) {
+  for (const double number : {projected, 0.0, 0.5 * (width - 1), -baseline * projected, 0.0,
+                              projected, 0.5 * (height - 1), 0.0, 0.0, 0.0, 1.0, 0.0}) {
     fields.Put(number);
   }
   return fields.Message();
