@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "frame/sort_outlines.h"
 #include "frame/mask_outline.h"
+#include "frame/sort_outlines.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

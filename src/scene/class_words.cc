@@ -9,9 +9,7 @@
 namespace hullslam {
 namespace {
 
-bool IsInWord(char c) {
-  return static_cast<unsigned char>(c) >= 0x80 || IsDigit(c) || IsLetter(c);
-}
+bool IsInWord(char c) { return static_cast<unsigned char>(c) >= 0x80 || IsDigit(c) || IsLetter(c); }
 
 // Whether `word` is `singular` or a plural of it.
 bool IsFormOf(const std::string& word, const std::string& singular) {

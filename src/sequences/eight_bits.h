@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// Images of 16 bits use as many of them as the camera has: 10, 12, 14 or 16, which the largest value
-// of all images of the camera tells. The highest of these become the 8 bits that are read; what is
-// brighter is white. An image of 8 bits is returned as it is.
+// Images of 16 bits use as many of them as the camera has: 10, 12, 14 or 16, which the largest
+// value of all images of the camera tells. The highest of these become the 8 bits that are read;
+// what is brighter is white. An image of 8 bits is returned as it is.
 cv::Mat To8Bits(const cv::Mat& image, uint16_t brightest);
 
 // The luma of an image in colour, CV_8UC3 or CV_8UC4, as libpng computes it when OpenCV reads a PNG

@@ -98,8 +98,7 @@ bool ToBool(const WrittenSetting& setting) {
 std::string BaseOf(const fs::path& file, const WrittenSetting& setting) {
   constexpr size_t kLongestBase = 500;
   const std::string& base = SingleValue(setting);
-  if (base.size() > kLongestBase ||
-      std::any_of(base.begin(), base.end(), IsControl)) {
+  if (base.size() > kLongestBase || std::any_of(base.begin(), base.end(), IsControl)) {
     throw InputError(fmt::format("{}: {} is '{}', expected the name of a preset or a file",
                                  setting.origin, kBase, ShowText(base)));
   }

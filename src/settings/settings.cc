@@ -231,7 +231,8 @@ int TumCamera(std::string name) {
   for (const std::string_view mark : {"freiburg", "fr"}) {
     const size_t at = name.find(mark);
     const size_t digit = at + mark.size();
-    const bool begins_word = at == 0 || (at != std::string::npos && !(IsDigit(name[at - 1]) || IsLetter(name[at - 1])));
+    const bool begins_word =
+        at == 0 || (at != std::string::npos && !(IsDigit(name[at - 1]) || IsLetter(name[at - 1])));
     const bool is_camera =
         begins_word && digit < name.size() && name[digit] >= '1' && name[digit] <= '3';
     if (is_camera && (digit + 1 == name.size() || !IsDigit(name[digit + 1]))) {
