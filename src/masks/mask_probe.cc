@@ -77,9 +77,15 @@ void ProbeFolder(std::span<const MaskFrame> frames, MaskProbe& probe) {
   const std::set<std::string>& counted = probe.has_names_of_frames ? texts.of_frames : texts.all;
   probe.jsons = (probe.has_names_of_frames ? jsons.of_frames : jsons.all).size();
   probe.texts = counted.size();
-  for (const std::string& name : counted) {
-    if (ProbeRow(probe.path / (name + ".txt"), probe)) {
-      return;
+  if (counted.empty()) {
+    return;
+  }
+  // Frames without instances have empty files, so another file may have to tell the format.
+  for (const std::set<std::string>& tried : {counted, texts.all}) {
+    for (const std::string& name : tried) {
+      if (ProbeRow(probe.path / (name + ".txt"), probe)) {
+        return;
+      }
     }
   }
 }

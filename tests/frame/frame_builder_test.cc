@@ -364,7 +364,7 @@ TEST_F(FrameBuilderTest, KeypointsAreChosenBesideDynamicThings) {
 TEST_F(FrameBuilderTest, KeypointsOfTheRightImageAreChosenBesideDynamicThings) {
   ImageInput pair = MakePair();
   FeatureOptions few = FewFeatures();
-  few.feature_count = 60;
+  few.feature_count = 24;
   const auto count_with_depth = [&] {
     const auto frame =
         FrameBuilder(StereoSensor(), DepthOptions(), few, DetectionOptions(), {"person"})

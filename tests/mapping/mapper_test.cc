@@ -671,9 +671,9 @@ TEST_F(MapperLateMasksTest, LandmarksOnDynamicThingsAreRemovedWhenTheMasksCome) 
   expect_static_only(FrameId(10), of_keyframe.dynamic_keypoints.size(), of_keyframe.keypoints);
   Learn();
   const LateDetections of_frame =
-      make_dynamic(OfTrackedFrame(5, {DetectCup(5)}), *world_.Observe(5).frame);
+      make_dynamic(OfTrackedFrame(30, {DetectCup(30)}), *world_.Observe(30).frame);
   EXPECT_TRUE(mapper_->Process(of_frame, nullptr));
-  expect_static_only(FrameId(5), of_frame.dynamic_keypoints.size(), of_frame.keypoints);
+  expect_static_only(FrameId(30), of_frame.dynamic_keypoints.size(), of_frame.keypoints);
 }
 
 // A frame that shows only a person, and so becomes no keyframe.

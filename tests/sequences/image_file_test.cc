@@ -152,7 +152,7 @@ TEST(ImageFile, TheBrightestValueIsThatOfAllImages) {
   EXPECT_EQ(BrightestOf(std::span(images).subspan(7, 3)), 509);
   folder.Write("7.png", EncodeImage(Ramp(CV_8UC1), ".png"));
   EXPECT_EQ(BrightestOf(std::span(images).subspan(7, 3)), 65'535) << "images of 8 bits";
-  EXPECT_EQ(BrightestOf({}), 65'535);
+  EXPECT_EQ(BrightestOf(std::span<const std::filesystem::path>()), 65'535);
 }
 
 // A cut image may have a thumbnail with an end marker of its own.

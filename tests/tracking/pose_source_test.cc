@@ -187,7 +187,7 @@ TEST_P(ByReferenceKeyframe, TakesThePoseWithWhichMoreMatchesAgree) {
     std::ranges::fill(frame.features.depth, 0.0F);
     std::ranges::fill(frame.features.right_u, -1.0F);
     std::mt19937 random(id);
-    std::normal_distribution<float> noise(0.0F, 1.5F);
+    std::normal_distribution<float> noise(0.0F, 2.5F);
     std::vector<Keypoint>& keypoints = frame.features.keypoints;
     for (size_t i = 0; i < keypoints.size(); ++i) {
       const float scale = world_.sensor().levels.scale[static_cast<size_t>(keypoints[i].level)];
