@@ -83,16 +83,16 @@ bool HasImageLayout(const py::array& array, int channels) {
 PixelSpan View(py::array array, const std::string& name, cv::Size size = {}) {
   const auto height = static_cast<uint64_t>(array.shape(0));
   const auto width = static_cast<uint64_t>(array.shape(1));
-  if (!size.empty() && (array.shape(0) != size.height || array.shape(1) != size.width)) {
-    throw InputError(fmt::format("{} is {}x{} px, expected Camera.width x Camera.height, {}x{} px",
-                                 name, width, height, size.width, size.height));
-  }
   if (height < 1 || width < 1 || height > kMostImageSide || width > kMostImageSide ||
       height * width > kMostImagePixels) {
     throw InputError(fmt::format(
         "{} has the shape {}, expected a height and a width from 1 to {} px, and up to {} million "
         "px together",
         name, ShapeOf(array), kMostImageSide, kMostImagePixels / 1'000'000));
+  }
+  if (!size.empty() && (array.shape(0) != size.height || array.shape(1) != size.width)) {
+    throw InputError(fmt::format("{} is {}x{} px, expected Camera.width x Camera.height, {}x{} px",
+                                 name, width, height, size.width, size.height));
   }
   const int channels = array.ndim() == 3 ? static_cast<int>(array.shape(2)) : 1;
   if (!HasImageLayout(array, channels)) {

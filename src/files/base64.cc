@@ -57,7 +57,8 @@ std::optional<std::string> DecodeBase64(std::string_view text) {
     }
   }
   const size_t rest = digits % kDigitsOfThreeBytes;
-  const bool is_whole = rest != 1 && (padding == 0 || rest + padding == kDigitsOfThreeBytes);
+  const bool is_whole =
+      rest != 1 && (padding == 0 || (rest > 0 && rest + padding == kDigitsOfThreeBytes));
   return is_whole ? std::optional(bytes) : std::nullopt;
 }
 

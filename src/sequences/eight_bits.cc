@@ -11,8 +11,10 @@ cv::Mat To8Bits(const cv::Mat& image, uint16_t brightest) {
     return image;
   }
   const int bits = std::max(8, (static_cast<int>(std::bit_width(unsigned{brightest})) + 1) / 2 * 2);
+  // The lower bits are cut off, as libpng does: the offset makes rounding do this.
+  const double scale = 1.0 / (1 << (bits - 8));
   cv::Mat scaled;
-  image.convertTo(scaled, CV_8U, 1.0 / (1 << (bits - 8)));
+  image.convertTo(scaled, CV_8U, scale, 0.5 * scale - 0.5);
   return scaled;
 }
 

@@ -192,8 +192,10 @@ TEST_F(StereoBag, TwoTopicsAreTrackedInMetres) {
   const std::string bag =
       folder_.Write("pairs.mcap", MadeMcap(Messages(MessageCoding::kCdr), "zstd"));
   const ProgramResult result = ExpectMapOf({bag});
-  ExpectParts(result.output, {"stereo: baseline 0.1200 m", "left images: /left/image",
-                              "cameras: /left/camera_info and /right/camera_info"});
+  ExpectParts(result.output,
+              {"stereo: baseline 0.1200 m", "left images: /left/image",
+               "cameras: /left/camera_info (raw images: K and D) and /right/camera_info (raw "
+               "images: K and D)"});
   EXPECT_NEAR(Scale(), 1.0, 0.01);
   const std::string poses = ReadFile(output_ / "trajectory.txt");
   for (const fs::path& other :

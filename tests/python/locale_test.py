@@ -28,7 +28,7 @@ if len(sys.argv) > 4:
     assert locale.str(1.5) == "1,5"
 settings = hullslam.Settings(desk / "camera.yaml")
 print(settings["Camera.fx"], settings["Camera.fps"])
-print(hullslam.evaluate_trajectory(run / "groundtruth.txt", run / "trajectory.txt"))
+print(hullslam.evaluate_trajectory(desk / "groundtruth.txt", run / "trajectory.txt"))
 print(hullslam.scene(run))
 for form in ("colmap", "nerfstudio", "gltf", "kitti"):
     hullslam.export(run, form, out / form, text=form == "colmap")

@@ -244,7 +244,9 @@ def test_one_mask_for_all_images_hides_its_pixels(settings, wall, kind):
     used[:, 160:] = 0
     slam = hullslam.System(settings, "rgbd", mask_all=used)
     used[:] = 0  # the array belongs to the caller
-    for result in wall.track(slam, 0, 3):
+    first, *others = wall.track(slam, 0, 3)
+    assert first.state == "tracked" and len(others) == 2
+    for result in others:
         assert result.state == "tracked"
         assert result.matches["pixel"][:, 0].max() < 160
     with pytest.raises(hullslam.InputError, match="mask_all is 160x240 px, expected Camera.width"):

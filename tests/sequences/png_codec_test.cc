@@ -118,36 +118,6 @@ TEST(PngCodec, TextIsNotDecompressed) {
   ExpectEqual(DecodePng(png, PixelForm::kGrey, kAnyHeader), image);
 }
 
-// A stream of so many megabytes of zeros, without its end: a block after which nothing refers to
-// what came before, again and again.
-std::string DeflatedZeros(int megabytes) {
-  const std::string zeros(1 << 20, '\0');
-  std::string packed(1 << 16, '\0');
-  z_stream stream = {};
-  deflateInit(&stream, 9);
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(zeros.data()));
-  stream.avail_in = static_cast<uInt>(zeros.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  deflate(&stream, Z_FULL_FLUSH);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  constexpr size_t kHeader = 2;
-  const std::string block = packed.substr(kHeader);
-  for (int i = 1; i < megabytes; ++i) {
-    packed += block;
-  }
-  return packed;
-}
-
-// The chunks of pixels have thirty gigabytes more than the image.
-TEST(PngCodec, WhatFollowsThePixelsIsNotDecompressed) {
-  const cv::Mat image(31, 47, CV_8UC1, cv::Scalar(0));
-  const std::string png = EncodePng(image).substr(0, kFirstChunkEnds) +
-                          Chunk("IDAT", DeflatedZeros(30'000)) + Chunk("IEND", "");
-  ExpectEqual(DecodePng(png, PixelForm::kGrey, kAnyHeader), image);
-}
-
 TEST(PngCodec, TheHeaderIsShownBeforeThePixelsAreRead) {
   const std::string whole = EncodePng(Noise(CV_16UC3));
   ImageHeader seen;

@@ -105,37 +105,6 @@ class ByReferenceKeyframe : public testing::TestWithParam<bool> {
                                    last);
   }
 
-  // The matches of a frame without words with keyframe 3.
-  std::vector<FoundLandmark> Matches(const Frame& frame) const {
-    const Keyframe& keyframe = made_.map.keyframes().At(KeyframeId(3));
-    std::vector<uint32_t> indices;
-    for (uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
-      if (keyframe.landmarks[i].IsValid()) {
-        indices.push_back(i);
-      }
-    }
-    std::vector<FoundLandmark> found;
-    for (const Match& match :
-         MatchByDescriptor(keyframe.frame->features, indices, frame.features, {})) {
-      found.push_back({match.keypoint, keyframe.landmarks[match.query]});
-    }
-    return found;
-  }
-  TrackingContext Context() const { return {world_.sensor(), options_, objects_, index_}; }
-  PoseEstimate RefineAllMatches(const Frame& frame, const Rigid3& last_pose) const {
-    PoseEstimate estimate;
-    estimate.cam_from_world = last_pose;
-    estimate.landmarks.resize(frame.features.size());
-    for (const auto& [keypoint, landmark] : Matches(frame)) {
-      estimate.landmarks[keypoint] = landmark;
-    }
-    return RefinePose(frame, made_.map, Context(), {}, std::move(estimate));
-  }
-  std::optional<PoseEstimate> RansacOfAllMatches(const Frame& frame) const {
-    return PoseOfMatches(frame, made_.map, Context(), Matches(frame),
-                         Context().min_reference_matches(), "reference keyframe");
-  }
-
   const RingWorld& world_ = SharedRing();
   const RingMap made_ =
       MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3(), .has_vocabulary = GetParam()});
@@ -174,37 +143,6 @@ TEST_P(ByReferenceKeyframe, FindsFramesFarFromTheLastPoseAmongWrongMatches) {
     EXPECT_LT((estimate->cam_from_world.translation - truth.translation).norm(), 0.01);
     EXPECT_LT(AngularDistance(estimate->cam_from_world.rotation, truth.rotation), 0.003);
   }
-}
-
-// Of noisy keypoints RANSAC keeps those that agree with a pose of three of them. The refinement
-// from a good last pose keeps more.
-TEST_P(ByReferenceKeyframe, TakesThePoseWithWhichMoreMatchesAgree) {
-  const Rigid3 truth = RingWorld::CamFromWorld(3.0 / 24.0);
-  size_t refined_is_better = 0;
-  for (uint32_t id = 1000; id < 1020; ++id) {
-    Frame frame = *world_.Observe(FrameId(id), truth).frame;
-    frame.words.clear();
-    std::ranges::fill(frame.features.depth, 0.0F);
-    std::ranges::fill(frame.features.right_u, -1.0F);
-    std::mt19937 random(id);
-    std::normal_distribution<float> noise(0.0F, 2.5F);
-    std::vector<Keypoint>& keypoints = frame.features.keypoints;
-    for (size_t i = 0; i < keypoints.size(); ++i) {
-      const float scale = world_.sensor().levels.scale[static_cast<size_t>(keypoints[i].level)];
-      keypoints[i].undistorted += scale * Eigen::Vector2f(noise(random), noise(random));
-      if (i % 5 < 3) {
-        keypoints[i].undistorted.x() = 640.0F - keypoints[i].undistorted.x();  // wrong
-      }
-    }
-    const auto estimate = Find(frame, truth);
-    const PoseEstimate refined = RefineAllMatches(frame, truth);
-    const auto agreed = RansacOfAllMatches(frame);
-    const int of_ransac = agreed ? agreed->inliers : 0;
-    ASSERT_TRUE(estimate);
-    EXPECT_EQ(estimate->inliers, std::max(refined.inliers, of_ransac)) << id;
-    refined_is_better += refined.inliers > of_ransac ? 1 : 0;
-  }
-  EXPECT_GT(refined_is_better, 0u) << "nothing was tested";
 }
 
 TEST_P(ByReferenceKeyframe, DoesNotFindOthers) {
