@@ -59,7 +59,8 @@ def files_of(folder):
 
 def test_a_decimal_comma_changes_nothing(desk, comma, tmp_path):
     run = tmp_path / "run"
-    run_program("rgbd_tum", desk, "--masks", desk / "masks", "--output", run, "--quiet")
+    run_program("rgbd_tum", desk, "--masks", desk / "masks", "--output", run, "--quiet", "--save-map",
+                tmp_path / "desk.map")
 
     def use(name, *arguments):
         (tmp_path / name).mkdir()
