@@ -410,9 +410,9 @@ class System:
         """
     def add_masks(self, frame: int, masks: Masks) -> bool:
         """Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at
-        most 2 s of time stamps later. If they show an object that is not mapped and no keyframe
-        with masks is near in time, it becomes a keyframe unless it is one. Returns False for a
-        frame that awaits no masks (any more).
+        most 2 s of time stamps later. If they show an object that is not mapped and no
+        keyframe with masks is near in time, it becomes a keyframe unless it is one. Returns
+        False for a frame that awaits no masks (any more).
         """
     def finish(self) -> None:
         """Waits until all keyframes are in the map, adjusts the whole map, and computes the

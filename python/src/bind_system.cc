@@ -254,11 +254,9 @@ void BindSystem(py::module_& module) {
           "this off.")
       .def("add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),
            "Adds the masks of a frame (TrackResult.frame) that were made after it was tracked, at\n"
-           "most 2 s of time stamps later. If they show an object that is not mapped and no "
-           "keyframe\n"
-           "with masks is near in time, it becomes a keyframe unless it is one. Returns False for "
-           "a\n"
-           "frame that awaits no masks (any more).")
+           "most 2 s of time stamps later. If they show an object that is not mapped and no\n"
+           "keyframe with masks is near in time, it becomes a keyframe unless it is one. Returns\n"
+           "False for a frame that awaits no masks (any more).")
       .def("finish", &Finish,
            "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
            "poses of all frames again. Ctrl+C ends it early.")

@@ -104,8 +104,9 @@ TEST_F(PoseObjectsTest, CompensationReducesTheMisfitOfTheLinesAndTheirSigma) {
   }
 }
 
-// The right camera is at +x of the left one, so a point is farther left in its frame.
-TEST_F(PoseObjectsTest, LinesOfTheRightImageAreCompensatedFromWhereTheirCameraIs) {
+// The excess is found by the normal of the plane of a line, which does not depend on the position
+// of the camera. So this test sees whether the lines are compensated, but not from where.
+TEST_F(PoseObjectsTest, LinesOfTheRightImageAreCompensatedToo) {
   constexpr double kBaseline = 0.3;  // m
   sensor_.camera.bf = kBaseline * sensor_.camera.fx;
   const Rigid3 world_from_left = Inverse(camera_);

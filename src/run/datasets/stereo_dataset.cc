@@ -83,8 +83,7 @@ void WarnOfBaseline(const PinholeCamera& camera) {
   if (baseline < kShortest || baseline > kLongest) {
     PrintError(
         "warning: the baseline is {:.3g} m, expected {} to {} m; Camera.bf is the baseline in "
-        "metres "
-        "times Camera.fx, and the translation between two cameras is in metres\n",
+        "metres times Camera.fx, and the translation between two cameras is in metres\n",
         baseline, kShortest, kLongest);
   }
 }
