@@ -66,7 +66,7 @@ void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments)
       ->excludes(&suite);
   app.add_option("--scene", arguments.scene, "scene")
       ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic", "house", "twins", "rotation",
-                             "wall", "turns", "pushed"}))
+                             "wall", "turns", "pushed", "road"}))
       ->excludes(&suite)
       ->capture_default_str();
   app.add_option("--rearranged", arguments.options.rearranged,

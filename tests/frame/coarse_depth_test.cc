@@ -73,6 +73,23 @@ TEST(CoarseDepth, FindsWhatIsALittleNearerThanTheKeypoints) {
   EXPECT_GT(cv::countNonZero(abs(depth(region) - metres) < 0.02), region.area() * 8 / 10);
 }
 
+// The image is searched in two bands. The first rows of the lower one have no texture of their own,
+// so their depth follows from what the rows above them show.
+TEST(CoarseDepth, TheLowerBandBeginsWithWhatTheRowsAboveItShow) {
+  SerialRunner runner;
+  const PinholeCamera camera{.fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5, .bf = 50.0};
+  cv::Mat left = MakeCornerImage();
+  const cv::Range blank(left.rows / 2, left.rows / 2 + 8);
+  left.rowRange(blank).setTo(120);
+  const int disparity = 20;
+  cv::Mat right(left.size(), CV_8UC1, cv::Scalar(120));
+  left.colRange(disparity, left.cols).copyTo(right.colRange(0, left.cols - disparity));
+  const cv::Mat depth =
+      CoarseDepth(left, right, camera, {cv::Rect({0, 0}, left.size()), {}}, runner);
+  const cv::Mat seen = depth(blank, cv::Range(200, left.cols));
+  EXPECT_GT(cv::countNonZero(abs(seen - 2.5) < 0.05), static_cast<int>(seen.total()) * 8 / 10);
+}
+
 TEST(CoarseDepth, ImagesOfDifferentThingsHaveLittleDepth) {
   SerialRunner runner;
   const PinholeCamera camera{.fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5, .bf = 50.0};

@@ -15,6 +15,7 @@
 #include "synthetic/house.h"
 #include "synthetic/pushed_board.h"
 #include "synthetic/rearrangement.h"
+#include "synthetic/road.h"
 #include "synthetic/room.h"
 #include "synthetic/scene_builder.h"
 #include "synthetic/twins.h"
@@ -26,7 +27,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::array<std::pair<std::string_view, SceneKind>, 10> kSceneNames = {
+constexpr std::array<std::pair<std::string_view, SceneKind>, 11> kSceneNames = {
     {{"desk", SceneKind::kDesk},
      {"room", SceneKind::kRoom},
      {"lowtexture", SceneKind::kLowTexture},
@@ -36,10 +37,12 @@ constexpr std::array<std::pair<std::string_view, SceneKind>, 10> kSceneNames = {
      {"rotation", SceneKind::kRotation},
      {"wall", SceneKind::kWall},
      {"turns", SceneKind::kTurns},
-     {"pushed", SceneKind::kPushed}}};
+     {"pushed", SceneKind::kPushed},
+     {"road", SceneKind::kRoad}}};
 constexpr double kTableHeight = 0.75;
 constexpr int kHouseFrames = 1800;
 constexpr int kTwinsFrames = 930;
+constexpr int kRoadFrames = 150;
 constexpr double kPi = std::numbers::pi;
 
 Vector3d OnTable(double x, double y) { return {x, y, kTableHeight}; }
@@ -315,6 +318,14 @@ Scene BuildTwins(int frames, uint64_t seed) {
   return builder.Finish();
 }
 
+Scene BuildRoad(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "road"));
+  FurnishRoad(builder);
+  const RoadPath path{.phase = builder.random().Uniform(0.0, 2.0 * kPi)};
+  builder.scene().world_from_cam = [path](double time) { return path.WorldFromCam(time); };
+  return builder.Finish();
+}
+
 Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
   switch (kind) {
     case SceneKind::kDesk:
@@ -337,6 +348,8 @@ Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
       return BuildTurns(seed);
     case SceneKind::kPushed:
       return BuildPushed(seed);
+    case SceneKind::kRoad:
+      return BuildRoad(seed);
   }
   throw InputError("unknown scene");
 }
@@ -389,9 +402,17 @@ int DefaultFrames(SceneKind kind) {
       return kHouseFrames;
     case SceneKind::kTwins:
       return kTwinsFrames;
+    case SceneKind::kRoad:
+      return kRoadFrames;
     default:
       return 300;
   }
+}
+
+PinholeCamera CameraOf(SceneKind kind) {
+  return kind == SceneKind::kRoad
+             ? RoadCamera()
+             : PinholeCamera{.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6};
 }
 
 uint64_t VisitSeed(uint64_t seed, const std::optional<uint64_t>& rearranged) {

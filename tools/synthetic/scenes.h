@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "hullslam/camera/pinhole.h"
 #include "synthetic/scene.h"
 
 namespace hullslam::synthetic {
@@ -19,7 +20,8 @@ enum class SceneKind {
   kRotation,
   kWall,
   kTurns,
-  kPushed
+  kPushed,
+  kRoad
 };
 
 // The kind with a name such as "desk" or "lowtexture". Throws InputError for an unknown name.
@@ -30,6 +32,9 @@ inline constexpr double kFramesPerSecond = 30.0;
 
 // The number of frames of the sequence that the scene was designed for.
 int DefaultFrames(SceneKind kind);
+
+// The camera with which the scene is rendered, without distortion.
+PinholeCamera CameraOf(SceneKind kind);
 
 // The seed of everything that differs between two visits of the same scene: the motion of the hand
 // and the noise of the sensor. For the visit before any rearrangement it is `seed` itself.

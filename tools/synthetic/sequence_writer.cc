@@ -30,35 +30,9 @@ bool IsFormerSequence(const fs::path& folder) {
   return json.is_object() && json.contains("generator") && json["generator"] == "make_synthetic";
 }
 
-// The baseline of the camera's settings is that of the stereo pair, if it is one.
-PinholeCamera CameraWith(double stereo_baseline, double fisheye) {
-  PinholeCamera camera = fisheye > 0.0 ? SyntheticFisheye(fisheye) : SyntheticCamera();
-  camera.bf = stereo_baseline > 0.0 ? stereo_baseline * camera.fx : camera.bf;
-  return camera;
-}
-
-SequencePlan MakePlan(const SequenceOptions& options) {
-  return {.name = std::string(SceneName(options.scene)),
-          .seed = options.seed,
-          .rearranged = options.rearranged,
-          .scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged),
-          .frames = options.frames,
-          .camera = CameraWith(options.stereo_baseline, options.fisheye),
-          .stereo_baseline = options.stereo_baseline,
-          .readout_time = options.readout_time,
-          .sensor = {.noise = options.noise},
-          .sensor_seed = VisitSeed(options.seed, options.rearranged),
-          .layout = {}};
-}
-
-}  // namespace
-
-PinholeCamera SyntheticCamera() { return {.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6}; }
-
 // The coefficients are about those of a lens of 180 degrees and more (TUM-VI). The virtual stereo
 // camera keeps its baseline.
-PinholeCamera SyntheticFisheye(double field_of_view) {
-  const PinholeCamera pinhole = SyntheticCamera();
+PinholeCamera FisheyeOf(const PinholeCamera& pinhole, double field_of_view) {
   PinholeCamera camera = pinhole;
   camera.lens = LensModel::kKannalaBrandt;
   camera.k1 = 0.0035;
@@ -69,6 +43,35 @@ PinholeCamera SyntheticFisheye(double field_of_view) {
   camera.fx = camera.fy = 0.5 * camera.width / RadiusOfAngle(camera, half);
   camera.bf = pinhole.bf / pinhole.fx * camera.fx;
   return camera;
+}
+
+// The baseline of the camera's settings is that of the stereo pair, if it is one.
+PinholeCamera CameraWith(const PinholeCamera& pinhole, double stereo_baseline, double fisheye) {
+  PinholeCamera camera = fisheye > 0.0 ? FisheyeOf(pinhole, fisheye) : pinhole;
+  camera.bf = stereo_baseline > 0.0 ? stereo_baseline * camera.fx : camera.bf;
+  return camera;
+}
+
+SequencePlan MakePlan(const SequenceOptions& options) {
+  return {.name = std::string(SceneName(options.scene)),
+          .seed = options.seed,
+          .rearranged = options.rearranged,
+          .scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged),
+          .frames = options.frames,
+          .camera = CameraWith(CameraOf(options.scene), options.stereo_baseline, options.fisheye),
+          .stereo_baseline = options.stereo_baseline,
+          .readout_time = options.readout_time,
+          .sensor = {.noise = options.noise},
+          .sensor_seed = VisitSeed(options.seed, options.rearranged),
+          .layout = {}};
+}
+
+}  // namespace
+
+PinholeCamera SyntheticCamera() { return CameraOf(SceneKind::kDesk); }
+
+PinholeCamera SyntheticFisheye(double field_of_view) {
+  return FisheyeOf(SyntheticCamera(), field_of_view);
 }
 
 bool WriteSequence(const fs::path& folder, const SequenceOptions& options,

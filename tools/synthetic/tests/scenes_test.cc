@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr SceneKind kAll[] = {SceneKind::kDesk,     SceneKind::kRoom,  SceneKind::kLowTexture,
                               SceneKind::kDynamic,  SceneKind::kHouse, SceneKind::kTwins,
                               SceneKind::kRotation, SceneKind::kWall,  SceneKind::kTurns,
-                              SceneKind::kPushed};
+                              SceneKind::kPushed,   SceneKind::kRoad};
 
 TEST(SceneKind, NamesAreParsedAndPrinted) {
   for (const SceneKind kind : kAll) {
@@ -128,7 +128,8 @@ TEST(VisitSeed, IsTheSeedOfTheSceneUnlessItIsRearranged) {
 }
 
 TEST(Scenes, OnlyDeskRoomAndHouseCanBeRearranged) {
-  for (const SceneKind kind : {SceneKind::kLowTexture, SceneKind::kDynamic, SceneKind::kTwins}) {
+  for (const SceneKind kind :
+       {SceneKind::kLowTexture, SceneKind::kDynamic, SceneKind::kTwins, SceneKind::kRoad}) {
     EXPECT_THROW(BuildScene(kind, 10, 1, 1), InputError) << SceneName(kind);
   }
 }
