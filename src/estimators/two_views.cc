@@ -16,6 +16,7 @@
 #include "geometry/triangulation.h"
 #include "util/chi_square.h"
 #include "util/median.h"
+#include "util/reached_by.h"
 
 namespace hullslam {
 namespace {
@@ -286,17 +287,33 @@ std::vector<Hypothesis> Refine(const PinholeCamera& camera, std::span<const Pixe
   return refined;
 }
 
-// The median parallax in degrees; 0 if no pair agrees with the motion.
-double MedianParallax(const Hypothesis& motion) {
+// Whether the first image shows the direction in which the camera moves, or the opposite one.
+bool IsForward(const PinholeCamera& camera, const Rigid3& b_from_a) {
+  const Eigen::Vector3d direction = Inverse(b_from_a).translation;
+  constexpr double kSideways = 1e-6;  // share of the step along the axis
+  return std::abs(direction.z()) > kSideways * direction.norm() &&
+         camera.UndistortedBounds().Contains(camera.Project(direction / direction.z()));
+}
+
+// The factor on the shares of TwoViewOptions for this motion.
+double ShareFactor(const PinholeCamera& camera, const Hypothesis& motion,
+                   const TwoViewOptions& options) {
+  return IsForward(camera, motion.b_from_a) ? options.forward_factor : 1.0;
+}
+
+// TwoViews::parallax; 0 if no pair agrees with the motion.
+double TypicalParallax(const PinholeCamera& camera, const Hypothesis& motion,
+                       const TwoViewOptions& options) {
   if (motion.parallaxes.empty()) {
     return 0.0;
   }
-  return Median(std::vector<double>(motion.parallaxes)) * 180.0 / std::numbers::pi;
+  return ReachedBy(0.5 * ShareFactor(camera, motion, options), motion.parallaxes) * 180.0 /
+         std::numbers::pi;
 }
 
 bool HasTooLittleParallax(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                           const Hypothesis& motion, const TwoViewOptions& options) {
-  return MedianParallax(motion) < options.min_parallax ||
+  return TypicalParallax(camera, motion, options) < options.min_parallax ||
          static_cast<double>(CountTurned(camera, pairs, motion)) >
              options.max_turned_share * static_cast<double>(motion.agreeing.size());
 }
@@ -319,7 +336,8 @@ TwoViewFailure Judge(const PinholeCamera& camera, std::span<const PixelPair> pai
   }
   const bool has_few = best.points.size() < options.min_points ||
                        static_cast<double>(best.points.size()) <
-                           options.min_share * static_cast<double>(best.agreeing.size());
+                           options.min_share * ShareFactor(camera, best, options) *
+                               static_cast<double>(best.agreeing.size());
   return has_few ? TwoViewFailure::kTooFewPoints : TwoViewFailure::kNone;
 }
 
@@ -369,7 +387,8 @@ TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair
     result.failure = failure;
     result.b_from_a = motion.b_from_a;
     result.points = motion.points;
-    result.parallax = MedianParallax(motion);
+    result.is_forward = IsForward(camera, motion.b_from_a);
+    result.parallax = TypicalParallax(camera, motion, options);
     return result;
   };
   if (HasTooLittleParallax(camera, pairs, *most, options)) {

@@ -25,7 +25,11 @@ struct TwoViewOptions {
   uint64_t seed = 0;
   size_t min_points = 50;  // least number of points in front of both cameras
   double min_share = 0.7;  // least share of such points among the pairs that agree with any motion
-  double min_parallax = 1.2;  // degrees; least median angle between the two rays to a point
+  double min_parallax = 1.2;  // degrees; least angle between the two rays to half of the points
+  // If the camera moves towards something that it sees, or away from it, `min_share` and the half
+  // of the points above are multiplied by this factor. However far such a camera moves, what is
+  // near leaves the image, and what is straight ahead has no parallax.
+  double forward_factor = 0.5;
   // A rotation alone may explain at most this share of the pairs that agree with the best motion.
   // Otherwise there is too little parallax.
   double max_turned_share = 0.9;
@@ -57,7 +61,9 @@ struct TwoViews {
   TwoViewFailure failure = TwoViewFailure::kNone;
   Rigid3 b_from_a;
   std::vector<Point> points;  // by increasing index of the pair
-  double parallax = 0.0;      // degrees, median angle between the two rays to a point
+  bool is_forward = false;    // whether the image of a shows the direction of the motion
+  double parallax = 0.0;  // degrees, the angle between the two rays that half of the points reach;
+                          // if is_forward, a smaller share (TwoViewOptions::forward_factor)
 
   bool ok() const { return failure == TwoViewFailure::kNone; }
 };

@@ -7,21 +7,23 @@
 #include <vector>
 
 #include "util/median.h"
+#include "util/reached_by.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kMinAdjustedParallax = 1.0;  // degrees, in the median
+constexpr double kMinAdjustedParallax = 1.0;  // degrees
 
-// The median angle between the rays from the first and the last view to the points, degrees.
-double MedianParallax(const InitialMap& map) {
+// The angle between the rays from the first and the last view that this share of the points
+// reaches, degrees.
+double TypicalParallax(const InitialMap& map, double share) {
   const Eigen::Vector3d last = Inverse(map.views.back().cam_from_world).translation;
   std::vector<double> angles;
   for (const InitialMap::Point& point : map.points) {
     const Eigen::Vector3d ray = point.position - last;
     angles.push_back(std::atan2(point.position.cross(ray).norm(), point.position.dot(ray)));
   }
-  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
+  return ReachedBy(share, std::move(angles)) * 180.0 / std::numbers::pi;
 }
 
 // Makes the median depth of the points in the first view 1.
@@ -41,14 +43,14 @@ void Normalise(InitialMap& map) {
 
 }  // namespace
 
-std::optional<InitialisationFailure> FinishInitialMap(InitialMap& map) {
+std::optional<InitialisationFailure> FinishInitialMap(InitialMap& map, double share) {
   std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
   if (map.points.size() < kMinInitialPoints) {
     return InitialisationFailure::kTooFewPoints;
   }
   // Two views with wrong matches may seem to have parallax. The adjustment with the views between
   // them reveals that they have none.
-  if (MedianParallax(map) < kMinAdjustedParallax) {
+  if (TypicalParallax(map, share) < kMinAdjustedParallax) {
     return InitialisationFailure::kTooLittleParallax;
   }
   Normalise(map);

@@ -15,8 +15,8 @@
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
 #include "tracking/shutter_correction.h"
-#include "util/median.h"
 #include "util/random_seed.h"
+#include "util/reached_by.h"
 
 namespace hullslam {
 namespace {
@@ -27,8 +27,9 @@ constexpr size_t kMostReferences = 12;
 constexpr double kReferenceInterval = 0.1;  // s from one reference to the next
 constexpr size_t kFramesBetween = 3;        // most frames between the first and the last view
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
-// If the keypoints have moved by less than this share of the image's width, the images have too
-// little parallax, and no motion is estimated.
+// If half of the keypoints have moved by less than this share of the image's width, the images have
+// too little parallax. Only the map of a camera that moves forward may have more keypoints that
+// hardly move (TwoViewOptions::forward_factor).
 constexpr double kMinShift = 0.015;
 
 using FramePointer = std::shared_ptr<const Frame>;
@@ -39,7 +40,9 @@ std::vector<Match> MatchFrames(const Frame& from, const Frame& to) {
   return MatchByDescriptor(from.features, all, to.features, {});
 }
 
-double MedianShift(const Frame& from, const Frame& to, const std::vector<Match>& matches) {
+// The distance in pixels by which this share of the keypoints has moved.
+double TypicalShift(double share, const Frame& from, const Frame& to,
+                    const std::vector<Match>& matches) {
   const auto position = [](const FrameFeatures& features, uint32_t keypoint) {
     return features.grid.PositionOf(features.keypoints, keypoint);
   };
@@ -48,7 +51,7 @@ double MedianShift(const Frame& from, const Frame& to, const std::vector<Match>&
     shifts.push_back(
         (position(from.features, match.query) - position(to.features, match.keypoint)).norm());
   }
-  return static_cast<double>(Median(std::move(shifts)));
+  return static_cast<double>(ReachedBy(share, std::move(shifts)));
 }
 
 double SigmaOf(const Keypoint& keypoint, const ScaleLevels& levels) {
@@ -258,14 +261,20 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   if (matches.size() < kMinMatches) {
     return fail(InitialisationFailure::kTooFewMatches);
   }
-  if (MedianShift(*first, *frame, matches) < kMinShift * sensor_.camera.width) {
+  const TwoViewOptions options{.seed = HashSeed(seed_, frame->id.value, "two views"),
+                               .min_points = kMinInitialPoints};
+  const double least_shift = kMinShift * sensor_.camera.width;
+  const double forward_share = 0.5 * options.forward_factor;
+  if (TypicalShift(forward_share, *first, *frame, matches) < least_shift) {
     return fail(InitialisationFailure::kTooLittleParallax);
   }
-  const TwoViews motion = EstimateTwoViews(
-      sensor_.camera, MakePairs(*first, *frame, matches, sensor_.levels),
-      {.seed = HashSeed(seed_, frame->id.value, "two views"), .min_points = kMinInitialPoints});
+  const TwoViews motion =
+      EstimateTwoViews(sensor_.camera, MakePairs(*first, *frame, matches, sensor_.levels), options);
   if (!motion.ok()) {
     return fail(ToInitialisationFailure(motion.failure));
+  }
+  if (!motion.is_forward && TypicalShift(0.5, *first, *frame, matches) < least_shift) {
+    return fail(InitialisationFailure::kTooLittleParallax);
   }
   InitialMap map = MakeMap(first, frame, matches, motion);
   const size_t between = references_.size() - reference - 1;
@@ -278,7 +287,7 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   }
   AdjustMap(sensor_, map);
   CorrectShutterOf(sensor_, map);  // the velocities of the views are not known before
-  if (const auto failure = FinishInitialMap(map)) {
+  if (const auto failure = FinishInitialMap(map, motion.is_forward ? forward_share : 0.5)) {
     return fail(*failure);
   }
   return {.map = std::move(map), .failure = {}};

@@ -238,6 +238,48 @@ TEST(TwoViews, ASmallStepHasTooLittleParallax) {
   }
 }
 
+// A street between houses, as a car sees it (m).
+double StreetDepth(const Eigen::Vector3d& ray, double share) {
+  const double to_house = (6.0 + 4.0 * share) / std::max(std::abs(ray.x()), 1e-3);
+  const double to_ground = 1.65 / std::max(ray.y(), 1e-3);
+  return std::min({to_house, to_ground, 80.0});
+}
+
+// Straight ahead there is no parallax, and what has much leaves the image. So half of the points of
+// a car may have little parallax however far it drives.
+TEST(TwoViews, AheadOfACarAFewPointsWithParallaxAreEnough) {
+  const Rigid3 motion = Motion({0.002, 0.005, 0.0}, {0.0, 0.0, -1.2});
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    std::vector<PixelPair> pairs =
+        See(motion, seed, {.noise = 0.3, .outliers = 0.1, .pairs = 900}, StreetDepth);
+    std::erase_if(pairs, [i = 0](const PixelPair& pair) mutable {
+      return (pair.a - Eigen::Vector2d(320.0, 240.0)).norm() > 160.0 && ++i % 3 != 0;
+    });
+    const TwoViews found = EstimateTwoViews(Camera(), pairs, {.seed = seed});
+    ASSERT_TRUE(found.ok()) << seed << ": " << ToString(found.failure);
+    EXPECT_TRUE(found.is_forward);
+    EXPECT_LT(AngularDistance(found.b_from_a.rotation, motion.rotation), 0.005) << seed;
+    EXPECT_LT(DirectionError(found, motion), 5.0) << seed;
+    EXPECT_EQ(EstimateTwoViews(Camera(), pairs, {.seed = seed, .forward_factor = 1.0}).failure,
+              TwoViewFailure::kTooLittleParallax)
+        << seed;
+  }
+}
+
+// The images of the two directions are the same, so backward counts as forward.
+TEST(TwoViews, AreForwardIfTheImageShowsTheDirectionOfTheMotion) {
+  const auto is_forward = [](const Eigen::Vector3d& step) {
+    const std::vector<PixelPair> pairs =
+        See(Motion({0, 0, 0}, step), 1, {.noise = 0.3, .outliers = 0.1}, GeneralDepth);
+    return EstimateTwoViews(Camera(), pairs, {}).is_forward;
+  };
+  EXPECT_TRUE(is_forward({0.0, 0.0, -0.3}));
+  EXPECT_TRUE(is_forward({0.0, 0.0, 0.3}));
+  EXPECT_TRUE(is_forward({-0.13, 0.0, -0.3}));   // at 545 px
+  EXPECT_FALSE(is_forward({-0.24, 0.0, -0.3}));  // at 736 px
+  EXPECT_FALSE(is_forward({-0.3, 0.0, 0.0}));
+}
+
 TEST(TwoViews, WrongPairsGiveNoMotion) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const TwoViews found = EstimateTwoViews(

@@ -69,5 +69,15 @@ TEST(InitialMapEnd, NeedsADegreeOfParallaxInTheMedian) {
   EXPECT_EQ(FinishInitialMap(little), InitialisationFailure::kTooLittleParallax);
 }
 
+TEST(InitialMapEnd, NeedsTheParallaxOfTheShareThatIsAskedFor) {
+  InitialMap map = MapOfParallax(1.05);
+  AddPoints({0.0, 0.0, 1e6}, 150, map);  // 60 of 210 points have parallax
+  InitialMap copy = map;
+  EXPECT_EQ(FinishInitialMap(copy), InitialisationFailure::kTooLittleParallax);
+  EXPECT_EQ(FinishInitialMap(map, 0.25), std::nullopt);
+  AddPoints({0.0, 0.0, 1e6}, 50, map);
+  EXPECT_EQ(FinishInitialMap(map, 0.25), InitialisationFailure::kTooLittleParallax);
+}
+
 }  // namespace
 }  // namespace hullslam

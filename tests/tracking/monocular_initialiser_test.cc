@@ -343,6 +343,24 @@ TEST_F(MonocularStart, KeypointsMustMoveByAShareOfTheImagesWidth) {
   EXPECT_NEAR(least_taken, least, 0.4);
 }
 
+// What is straight ahead hardly moves in the image, so it is enough if a quarter of the keypoints
+// moves.
+TEST_F(MonocularStart, ACameraThatMovesForwardNeedsFewerKeypointsThatMove) {
+  const auto at = [](double z) {
+    return Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, -z));
+  };
+  EXPECT_LT(MedianShift(world_.Observe(FrameId(0), at(0.0)), world_.Observe(FrameId(10), at(0.2))),
+            0.015 * sensor_.camera.width);
+  for (const double direction : {1.0, -1.0}) {
+    MonocularInitialiser initialiser(sensor_, 1);
+    EXPECT_FALSE(Give(initialiser, 0, at(0.0)).map);
+    EXPECT_FALSE(Give(initialiser, 5, at(0.02 * direction)).map);
+    const MonocularInitialiser::Result result = Give(initialiser, 10, at(0.2 * direction));
+    ASSERT_TRUE(result.map);
+    ExpectRight(*result.map);
+  }
+}
+
 TEST_F(MonocularStart, EveryThirdFrameIsAReferenceAndThreeViewsAreBetween) {
   MonocularInitialiser initialiser(sensor_, 1);
   std::optional<InitialMap> map;
