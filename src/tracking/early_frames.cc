@@ -36,22 +36,57 @@ KeyframeId NearestInTime(const Map& map, const Frame& frame) {
   return nearest;
 }
 
-// Finds a frame in the map. `before` is the last frame that was found; if this one is found, it
-// takes its place. The result has no pose if the frame is a keyframe.
-std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext& context,
-                                          const std::shared_ptr<const Frame>& frame,
-                                          LastFrame& before) {
-  constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
+// A frame that was found. The result has no relative pose if the frame is a keyframe.
+struct FoundFrame {
   TrackedFrame tracked;
-  tracked.frame = frame->id;
-  tracked.timestamp = frame->timestamp;
+  LastFrame last;  // to find the next frame
+};
+
+TrackedFrame MakeTracked(const Frame& frame) {
+  TrackedFrame tracked;
+  tracked.frame = frame.id;
+  tracked.timestamp = frame.timestamp;
   tracked.state = TrackingState::kTracked;
-  const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame->id);
-  if (keyframe && IslandOf(map, *keyframe).IsValid()) {
-    before.frame = frame;
-    before.cam_from_world = map.CamFromWorld({*keyframe, Rigid3(), map.ScaleOf(*keyframe)});
-    return tracked;
+  return tracked;
+}
+
+FoundFrame MakeFound(const Map& map, const std::shared_ptr<const Frame>& frame,
+                     LocalTracking tracking) {
+  FoundFrame found{.tracked = MakeTracked(*frame), .last = {}};
+  PoseEstimate& estimate = tracking.estimate;
+  found.tracked.from_keyframe = map.RelativeTo(tracking.reference, estimate.cam_from_world);
+  found.tracked.cam_from_world = estimate.cam_from_world;
+  found.tracked.inliers = estimate.inliers;
+  found.last.frame = frame;
+  found.last.landmarks = std::move(estimate.landmarks);
+  found.last.reference = tracking.reference;
+  found.last.cam_from_world = estimate.cam_from_world;
+  return found;
+}
+
+// The frame if it is a keyframe of the map, perhaps a culled one.
+std::optional<FoundFrame> FindKeyframe(const Map& map, const std::shared_ptr<const Frame>& frame) {
+  const std::optional<KeyframeId> id = map.KeyframeOfFrame(frame->id);
+  if (!id || !IslandOf(map, *id).IsValid()) {
+    return std::nullopt;
   }
+  FoundFrame found{.tracked = MakeTracked(*frame), .last = {}};
+  found.last.frame = frame;
+  found.last.reference = map.NearestAlive(*id);
+  found.last.cam_from_world = map.CamFromWorld({*id, Rigid3(), map.ScaleOf(*id)});
+  if (const Keyframe* const keyframe = map.keyframes().Find(*id)) {
+    found.last.frame = keyframe->frame;  // perhaps with fewer keypoints
+    found.last.landmarks = keyframe->landmarks;
+  }
+  return found;
+}
+
+// Seeks a frame at the keyframe that is nearest in time, and everywhere by words. `before` is the
+// last frame before it that was found.
+std::optional<FoundFrame> FindFrame(const Map& map, const TrackingContext& context,
+                                    const std::shared_ptr<const Frame>& frame,
+                                    const LastFrame& before) {
+  constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
   LastFrame nearest;
   std::span<PoseSource* const> sources = kSources;
   nearest.reference = NearestInTime(map, *frame);
@@ -67,13 +102,23 @@ std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext&
     return std::nullopt;
   }
   CorrectShutter(frame, frame, map, context, before, found->tracking);
-  const PoseEstimate& estimate = found->tracking.estimate;
-  before.frame = frame;
-  before.cam_from_world = estimate.cam_from_world;
-  tracked.from_keyframe = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
-  tracked.cam_from_world = estimate.cam_from_world;
-  tracked.inliers = estimate.inliers;
-  return tracked;
+  return MakeFound(map, frame, std::move(found->tracking));
+}
+
+// Tracks a frame from the frame after it. `later`, the one after that, gives the velocity if it was
+// found.
+std::optional<FoundFrame> TrackBack(const Map& map, const TrackingContext& context,
+                                    const std::shared_ptr<const Frame>& frame, LastFrame after,
+                                    const FoundFrame* later) {
+  constexpr std::array<PoseSource*, 2> kSources = {&PoseByMotionModel, &PoseByReferenceKeyframe};
+  after.motion = CameraMotion{Rigid3(), frame->timestamp - after.frame->timestamp};
+  if (later != nullptr) {
+    after.motion = CameraMotion{after.cam_from_world * Inverse(later->last.cam_from_world),
+                                after.frame->timestamp - later->last.frame->timestamp};
+  }
+  std::optional<ConfirmedPose> found =
+      FindConfirmedPose(*frame, map, context, after, kSources).found;
+  return found ? std::optional(MakeFound(map, frame, std::move(found->tracking))) : std::nullopt;
 }
 
 }  // namespace
@@ -90,21 +135,38 @@ void EarlyFrames::Keep(std::shared_ptr<const Frame> frame, bool is_tracked) {
 std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingContext& context,
                                                 const Cancellation* cancellation,
                                                 const ProgressCallback& on_progress) {
-  std::vector<TrackedFrame> localised;
+  std::vector<std::optional<FoundFrame>> found(frames_.size());
   LastFrame before;  // the last frame before the current one that was found
-  int done = 0;
-  for (const Kept& kept : frames_) {
-    if (IsRequested(cancellation)) {
-      break;
+  for (size_t i = 0; i < frames_.size() && !IsRequested(cancellation); ++i) {
+    const std::shared_ptr<const Frame>& frame = frames_[i].frame;
+    found[i] = FindKeyframe(map, frame);
+    if (!found[i]) {
+      found[i] = FindFrame(map, context, frame, before);
     }
-    if (std::optional<TrackedFrame> tracked = LocaliseFrame(map, context, kept.frame, before)) {
-      localised.push_back(std::move(*tracked));
+    if (found[i]) {
+      before = found[i]->last;
     }
     if (on_progress) {
-      on_progress(++done, static_cast<int>(frames_.size()));
+      on_progress(static_cast<int>(i) + 1, static_cast<int>(frames_.size()));
+    }
+  }
+  const auto after = [&](size_t i) {  // the frame right after this one, if it was found
+    const bool is_next =
+        i + 1 < frames_.size() && frames_[i + 1].frame->id.value == frames_[i].frame->id.value + 1;
+    return is_next && found[i + 1] ? &*found[i + 1] : nullptr;
+  };
+  for (size_t i = frames_.size(); i-- > 0 && !IsRequested(cancellation);) {
+    if (const FoundFrame* const next = after(i); next != nullptr && !found[i]) {
+      found[i] = TrackBack(map, context, frames_[i].frame, next->last, after(i + 1));
     }
   }
   frames_.clear();
+  std::vector<TrackedFrame> localised;
+  for (std::optional<FoundFrame>& frame : found) {
+    if (frame) {
+      localised.push_back(std::move(frame->tracked));
+    }
+  }
   return localised;
 }
 

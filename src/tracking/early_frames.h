@@ -41,9 +41,12 @@ class EarlyFrames {
   // otherwise push out those without a pose. Then the oldest of the others are forgotten.
   void Keep(std::shared_ptr<const Frame> frame, bool is_tracked);
 
-  // Finds the frames in the final map and forgets them. Frames that are not found are left out, and
-  // so are those that are left when `cancellation` (may be null) is requested. `on_progress` is
-  // called after each frame. `context` has the object index of this map.
+  // Finds the frames in the final map and forgets them. Each is sought at the keyframe that is
+  // nearest in time. A frame that is not found there is tracked from the frame after it: the first
+  // images of a car show the landmarks of the map far ahead, too small to be recognised, but hardly
+  // different from one image to the next. Frames that are not found are left out, and so are those
+  // that are left when `cancellation` (may be null) is requested. `on_progress` is called after
+  // each frame. `context` has the object index of this map.
   std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context,
                                      const Cancellation* cancellation = nullptr,
                                      const ProgressCallback& on_progress = {});

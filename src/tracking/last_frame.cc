@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/last_frame.h"
 
+#include <cmath>
+
 #include "hullslam/util/check.h"
 #include "util/id_set.h"
 
@@ -63,7 +65,7 @@ std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
     return std::nullopt;
   }
   const double time_step = timestamp - last.frame->timestamp;
-  if (time_step > kMaxExtrapolation * last.motion->duration) {
+  if (std::abs(time_step) > kMaxExtrapolation * std::abs(last.motion->duration)) {
     return std::nullopt;
   }
   return PartOfMotion(last.motion->cam_from_last_cam, time_step / last.motion->duration);

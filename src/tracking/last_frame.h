@@ -15,7 +15,7 @@ namespace hullslam {
 // The motion from one tracked frame to the next.
 struct CameraMotion {
   Rigid3 cam_from_last_cam;
-  double duration = 0.0;  // s
+  double duration = 0.0;  // s; negative between frames that are tracked against the order of time
 };
 
 // The velocity of the camera, and when it was measured.

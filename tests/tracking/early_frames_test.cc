@@ -84,6 +84,40 @@ TEST_F(EarlyFramesTest, AreLeftOutWhereTheMapDoesNotShowThem) {
   EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
 }
 
+// Two images of a point differ so much that only a search near its expected pixel finds it. A car
+// sees the landmarks of its first map like this from far behind.
+TEST_F(EarlyFramesTest, AreTrackedBackFromTheFrameAfterThem) {
+  const SyntheticWorld world({.points = 300, .depth_share = 0.0, .flipped_bits = 40});
+  for (uint32_t i = 0; i < 13; ++i) {
+    early_.Keep(world.Observe(i).frame, false);
+  }
+  const SyntheticMap made = MakeSyntheticMap(world, {8, 10, 12});
+  const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
+  ASSERT_EQ(found.size(), 13u);
+  for (uint32_t i = 0; i < 13; ++i) {
+    EXPECT_EQ(found[i].frame, FrameId(i));
+    if (i < 8) {
+      ASSERT_TRUE(found[i].from_keyframe) << i;
+      const Rigid3 error =
+          made.map.CamFromWorld(*found[i].from_keyframe) * Inverse(SyntheticWorld::CamFromWorld(i));
+      EXPECT_LT(error.translation.norm(), 0.02) << i;
+      EXPECT_GE(found[i].inliers, 30) << i;
+    }
+  }
+}
+
+// A frame that was not kept, or is not found, ends the way back.
+TEST_F(EarlyFramesTest, AreNotTrackedBackOverAGap) {
+  const SyntheticWorld world({.points = 300, .depth_share = 0.0, .flipped_bits = 40});
+  for (const uint32_t i : {0U, 4U, 6U, 7U, 8U}) {
+    early_.Keep(world.Observe(i).frame, false);
+  }
+  const SyntheticMap made = MakeSyntheticMap(world, {8, 10, 12});
+  const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found.front().frame, FrameId(6));
+}
+
 // The time stamps of another session may be the same although it was elsewhere.
 TEST_F(EarlyFramesTest, AreSoughtAtTheKeyframesOfTheirSession) {
   SyntheticMap made = MakeSyntheticMap(world_, {2, 5});

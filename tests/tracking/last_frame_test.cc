@@ -123,5 +123,12 @@ TEST_F(LastFrameTest, NothingIsPredictedAfterALongGapOrWithoutAMotion) {
   EXPECT_FALSE(PredictMotion(last_, 0.1));
 }
 
+TEST_F(LastFrameTest, TheMotionAgainstTheOrderOfTimeIsPredictedAlike) {
+  last_.motion->duration = -0.1;
+  EXPECT_NEAR(PredictMotion(last_, -0.1)->translation.x(), 0.4, 1e-12);
+  EXPECT_NEAR(PredictMotion(last_, -0.3)->translation.x(), 1.2, 1e-12);
+  EXPECT_FALSE(PredictMotion(last_, -0.401));
+}
+
 }  // namespace
 }  // namespace hullslam
