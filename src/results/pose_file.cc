@@ -27,12 +27,16 @@ namespace fs = std::filesystem;
 constexpr size_t kPoseColumns = 8;     // stamp, position, rotation
 constexpr size_t kMatrixColumns = 12;  // or 16, with the row 0 0 0 1
 constexpr size_t kEurocColumns = 17;   // also velocity and biases
+constexpr size_t kTartanColumns = 7;   // position, rotation
 
 struct Layout {
   size_t columns = kPoseColumns;  // of each row
   size_t first = 0;               // column of the stamp, or of the first element of a matrix
   bool is_w_first = false;
   bool is_matrix = false;  // without stamps, but with the number of the frame if `first` is 1
+  bool is_tartan = false;  // of TartanAir, without stamps
+
+  bool HasStamps() const { return !is_matrix && !is_tartan; }
 };
 
 // The names of the columns, in small letters and without units, which are in brackets.
@@ -90,10 +94,14 @@ Layout LayoutOf(const TextRow& row) {
   if (columns == kEurocColumns) {
     return {.columns = columns, .is_w_first = true};
   }
+  if (columns == kTartanColumns) {
+    return {.columns = columns, .is_tartan = true};
+  }
   if (columns != kPoseColumns) {
     row.Fail(fmt::format(
         "{} columns, expected 8 (timestamp tx ty tz qx qy qz qw), the 12 or 16 of KITTI, the same "
-        "behind the number of the frame (KITTI-360), or a first line with the names of the columns",
+        "behind the number of the frame (KITTI-360), the 7 of TartanAir, or a first line with the "
+        "names of the columns",
         columns));
   }
   return {};
@@ -132,6 +140,19 @@ void CheckLength(const TextRow& row, const std::array<size_t, 4>& columns) {
   }
 }
 
+// The cameras of TartanAir look along x, y is to the right and z is down (NED).
+Rigid3 ReadTartanPose(const TextRow& row) {
+  constexpr size_t kRotation = 3;  // qx qy qz qw
+  const Eigen::Quaterniond ned =
+      row.Rotation(kRotation + 3, kRotation, kRotation + 1, kRotation + 2);
+  CheckLength(row, {kRotation, kRotation + 1, kRotation + 2, kRotation + 3});
+  Eigen::Matrix3d ned_from_cam;
+  ned_from_cam << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  return {ned * Eigen::Quaterniond(ned_from_cam),
+          {row.Number(0, "tx", kMostMetres), row.Number(1, "ty", kMostMetres),
+           row.Number(2, "tz", kMostMetres)}};
+}
+
 Rigid3 ReadPose(const TextRow& row, const Layout& layout) {
   if (row.columns.size() != layout.columns) {
     row.Fail(fmt::format("{} columns, expected {} as in the first line", row.columns.size(),
@@ -139,6 +160,9 @@ Rigid3 ReadPose(const TextRow& row, const Layout& layout) {
   }
   if (layout.is_matrix) {
     return ReadMatrix(row, layout.first);
+  }
+  if (layout.is_tartan) {
+    return ReadTartanPose(row);
   }
   const size_t at = layout.first;
   const size_t x = at + (layout.is_w_first ? 5 : 4);
@@ -208,7 +232,7 @@ class Reader {
     try {
       if (!layout_) {
         layout_ = LayoutOf(row);
-        file_.has_stamps = !layout_->is_matrix;
+        file_.has_stamps = layout_->HasStamps();
         file_.has_numbers = layout_->is_matrix && layout_->first > 0;
       }
       AddPose(row, {StampOf(row), ReadPose(row, *layout_)});
@@ -219,7 +243,7 @@ class Reader {
   }
 
   double StampOf(const TextRow& row) {
-    if (layout_->is_matrix) {
+    if (!layout_->HasStamps()) {
       return file_.has_numbers ? row.Number(0, "the number of the frame")
                                : static_cast<double>(rows_ - 1);
     }
@@ -302,7 +326,7 @@ bool FitsFrames(const PoseFile& file, size_t frames) {
 void SetStamps(const fs::path& path, std::span<const double> stamps, PoseFile& file) {
   if (!FitsFrames(file, stamps.size())) {
     throw InputError(fmt::format(
-        "{}: its {} poses have no time stamps (KITTI){}, and there are {} to compare with; "
+        "{}: its {} poses have no time stamps{}, and there are {} to compare with; "
         "expected "
         "as many, or times.txt beside it with one time per line",
         path.string(), file.poses.size(),

@@ -27,7 +27,8 @@ struct PoseFile {
 // - EuRoC without names: 17 columns;
 // - KITTI: the 12 numbers of the first three rows of the matrix world from camera, or all 16. They
 //   have no stamps, unless times.txt beside the file has one line for each pose;
-// - KITTI-360: the same behind the number of the frame, without the poses of some frames.
+// - TartanAir: tx ty tz qx qy qz qw without stamps, of a camera that looks along x with z down;
+// - KITTI-360: the same as KITTI behind the number of the frame, without the poses of some frames.
 // Stamps may be in seconds, milliseconds, microseconds or nanoseconds. Rows that are malformed or
 // go back in time are skipped and counted; of rows with the same stamp, the last one is used.
 // Throws InputError if most rows are malformed, or if most stamps repeat the one before with

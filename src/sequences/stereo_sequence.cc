@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/util/error.h"
@@ -60,7 +63,7 @@ PinholeCamera CameraOf(const fs::path& file, const std::string& name) {
   const auto found = projections.find(name);
   if (found == projections.end()) {
     throw InputError(
-        fmt::format("{}: has no row '{}:', expected a calib.txt of KITTI", file.string(), name));
+        fmt::format("{}: has no row '{}:', expected a calibration of KITTI", file.string(), name));
   }
   return LeftCameraOf(found->second);
 }
@@ -71,7 +74,7 @@ PinholeCamera CameraOfPair(const fs::path& file, const std::string& left_name,
   const auto left = projections.find(left_name);
   const auto right = projections.find(right_name);
   if (left == projections.end() || right == projections.end()) {
-    throw InputError(fmt::format("{}: has no rows '{}:' and '{}:', expected a calib.txt of KITTI",
+    throw InputError(fmt::format("{}: has no rows '{}:' and '{}:', expected a calibration of KITTI",
                                  file.string(), left_name, right_name));
   }
   PinholeCamera camera = LeftCameraOf(left->second);
@@ -85,17 +88,76 @@ PinholeCamera CameraOfPair(const fs::path& file, const std::string& left_name,
   return camera;
 }
 
+// The seconds since 1970 of a row such as "2011-09-26 13:02:25.964389445".
+double SecondsOfDate(const TextRow& row) {
+  const auto fail = [&row] {
+    row.Fail("expected a date and a time, such as 2011-09-26 13:02:25.5");
+  };
+  // The three numbers of a text that are separated by `separator`.
+  const auto split = [&](std::string_view text, char separator) {
+    std::array<double, 3> numbers{};
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      const size_t end = i + 1 < numbers.size() ? text.find(separator) : text.size();
+      if (end == std::string_view::npos || !ParseFinite(text.substr(0, end), numbers[i])) {
+        fail();
+      }
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return numbers;
+  };
+  const auto [year, month, day] = split(row.columns[0], '-');
+  const auto [hours, minutes, seconds] = split(row.columns[1], ':');
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(year)),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) {
+    fail();
+  }
+  const std::chrono::duration<double> midnight = std::chrono::sys_days(date).time_since_epoch();
+  constexpr double kMinute = 60.0;
+  return midnight.count() + kMinute * (kMinute * hours + minutes) + seconds;
+}
+
 std::vector<double> ReadTimes(const fs::path& file) {
   std::vector<double> times;
   ForEachRow(file, [&](const TextRow& row) { times.push_back(row.Stamp(0)); });
   return times;
 }
 
+// The times of KITTI's raw data. ForEachRow() would take the first date for the names of columns.
+std::vector<double> ReadDates(const fs::path& file) {
+  const std::string text = ReadText(file);
+  std::vector<double> times;
+  int line = 0;
+  for (std::string_view words : LinesOf(text)) {
+    ++line;
+    words = words.substr(0, words.find_last_not_of(" \r") + 1);
+    if (!words.empty()) {
+      const size_t blank = std::min(words.find(' '), words.size() - 1);
+      times.push_back(
+          SecondsOfDate({file, line, {words.substr(0, blank), words.substr(blank + 1)}}));
+    }
+  }
+  return times;
+}
+
+constexpr const char* kRawTimes = "timestamps.txt";
+
+// Where the files of a sequence are.
+struct KittiFiles {
+  fs::path left;
+  fs::path right;
+  fs::path times;
+  fs::path calibration;
+  std::string left_name;  // of the projection
+  std::string right_name;
+};
+
 // `right` is the folder of the right images; empty for the left ones alone.
-std::vector<FramePaths> ListKittiImages(const fs::path& folder, const fs::path& left,
+std::vector<FramePaths> ListKittiImages(const fs::path& times_file, const fs::path& left,
                                         const fs::path& right, std::vector<std::string>& warnings) {
-  const fs::path times_file = folder / "times.txt";
-  const std::vector<double> times = ReadTimes(times_file);
+  const std::vector<double> times =
+      times_file.filename() == kRawTimes ? ReadDates(times_file) : ReadTimes(times_file);
   const std::vector<fs::path> images = ListImages(left);
   if (images.size() != times.size()) {
     throw InputError(fmt::format("{}: has {} times, expected one for each of the {} images in {}",
@@ -127,21 +189,46 @@ std::optional<fs::path> FindKittiTruth(const fs::path& folder) {
   return std::nullopt;
 }
 
-// The first two of the folders that exist: grey or colour images.
-std::pair<std::string, std::string> FindKittiFolders(const fs::path& folder) {
+// The calibration of the raw data is beside the folders of the drives of a day, or was copied into
+// one.
+fs::path RawCalibration(const fs::path& folder) {
+  const fs::path own = folder / "calib_cam_to_cam.txt";
+  std::error_code error;
+  return fs::exists(own, error)
+             ? own
+             : fs::weakly_canonical(folder, error).parent_path() / own.filename();
+}
+
+// The first of the folders that exist: grey or colour images of the odometry benchmark or of the
+// raw data.
+std::optional<KittiFiles> FindIn(const fs::path& folder) {
   std::error_code error;
   for (const auto& [left, right] : {std::pair("0", "1"), std::pair("2", "3")}) {
-    if (fs::is_directory(folder / (std::string("image_") + left), error)) {
-      return {left, right};
+    const auto image = [&](const char* digits, const char* camera) {
+      return folder / fmt::format("image_{}{}", digits, camera);
+    };
+    if (fs::is_directory(image("", left), error)) {
+      return KittiFiles{image("", left),      image("", right),        folder / "times.txt",
+                        folder / "calib.txt", std::string("P") + left, std::string("P") + right};
+    }
+    if (fs::is_directory(image("0", left) / "data", error)) {
+      return KittiFiles{image("0", left) / "data",      image("0", right) / "data",
+                        image("0", left) / kRawTimes,   RawCalibration(folder),
+                        std::string("P_rect_0") + left, std::string("P_rect_0") + right};
     }
   }
-  const auto is_sequence = [&](const fs::path& other) {
-    return fs::is_directory(other / "image_0", error) || fs::is_directory(other / "image_2", error);
-  };
-  throw InputError(folder.string() +
-                   ": has no folder image_0 or image_2, expected a sequence of KITTI's odometry "
-                   "benchmark" +
-                   SuggestFolder(folder, is_sequence));
+  return std::nullopt;
+}
+
+KittiFiles FindKittiFiles(const fs::path& folder) {
+  if (auto files = FindIn(folder)) {
+    return *std::move(files);
+  }
+  throw InputError(
+      folder.string() +
+      ": has no folder image_0 or image_2, expected a sequence of KITTI's odometry "
+      "benchmark, or of its raw data, rectified, with image_00/data or image_02/data" +
+      SuggestFolder(folder, [](const fs::path& other) { return FindIn(other).has_value(); }));
 }
 
 void SetSize(const fs::path& image, PinholeCamera& camera) {
@@ -239,18 +326,40 @@ void PairFolders(const fs::path& left_folder, const fs::path& right_folder,
   }
 }
 
+// The folders of the left and of the right images; empty if there are neither.
+std::pair<fs::path, fs::path> FindSides(const fs::path& path) {
+  std::error_code error;
+  const auto find = [&](std::initializer_list<const char*> names) {
+    const auto* const found = std::ranges::find_if(
+        names, [&](const char* name) { return fs::is_directory(path / name, error); });
+    return found != names.end() ? path / *found : fs::path();
+  };
+  // make_synthetic writes the left images where its RGB-D sequences have them; TartanAir has other
+  // names.
+  fs::path left = find({"left", "image_left", "rgb"});
+  fs::path right = find({"right", "image_right"});
+  if (left.empty() != right.empty()) {
+    throw InputError(
+        fmt::format("{}: has a folder {} but none {}, expected both", path.string(),
+                    left.empty() ? right.filename().string() : left.filename().string(),
+                    left.empty() ? "left" : "right"));
+  }
+  return {std::move(left), std::move(right)};
+}
+
 }  // namespace
 
 StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& selection,
                               const std::shared_ptr<const StereoRectifier>& rectifier) {
-  const auto [left, right] = FindKittiFolders(folder);
+  const KittiFiles files = FindKittiFiles(folder);
   StereoSequence sequence;
   sequence.images.dataset = "kitti";
   if (rectifier == nullptr) {
-    sequence.calibration.camera = CameraOfPair(folder / "calib.txt", "P" + left, "P" + right);
+    sequence.calibration.camera =
+        CameraOfPair(files.calibration, files.left_name, files.right_name);
   }
-  sequence.images.frames = ListKittiImages(folder, folder / ("image_" + left),
-                                           folder / ("image_" + right), sequence.images.warnings);
+  sequence.images.frames =
+      ListKittiImages(files.times, files.left, files.right, sequence.images.warnings);
   FinishKitti(folder, selection, sequence.images, sequence.calibration);
   if (rectifier != nullptr) {
     sequence.calibration.camera = rectifier->camera();
@@ -260,27 +369,19 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
 }
 
 LeftSequence OpenKittiImages(const fs::path& folder, const FrameSelection& selection) {
-  const std::string left = FindKittiFolders(folder).first;
+  const KittiFiles files = FindKittiFiles(folder);
   LeftSequence sequence;
   sequence.images.dataset = "kitti_left";
-  sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left);
-  sequence.images.frames =
-      ListKittiImages(folder, folder / ("image_" + left), {}, sequence.images.warnings);
+  sequence.calibration.camera = CameraOf(files.calibration, files.left_name);
+  sequence.images.frames = ListKittiImages(files.times, files.left, {}, sequence.images.warnings);
   FinishKitti(folder, selection, sequence.images, sequence.calibration);
   return sequence;
 }
 
 ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& options) {
   std::error_code error;
-  // make_synthetic writes the left images where its RGB-D sequences have them.
-  const fs::path left = fs::is_directory(path / "left", error) ? path / "left" : path / "rgb";
-  const bool has_left = fs::is_directory(left, error);
-  const bool has_right = fs::is_directory(path / "right", error);
-  if (has_left != has_right) {
-    throw InputError(fmt::format("{}: has a folder {} but none {}, expected both", path.string(),
-                                 has_left ? "left" : "right", has_left ? "right" : "left"));
-  }
-  if (!has_left) {
+  const auto [left, right] = FindSides(path);
+  if (left.empty()) {
     ImageSequence halves =
         OpenImageStream(path, {.frames_per_second = fs::is_directory(path, error)
                                                         ? std::optional(options.frames_per_second)
@@ -293,9 +394,11 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
   }
   ImageSequence sequence;
   sequence.dataset = "stereo_folder";
-  PairFolders(left, path / "right", options.frames_per_second, sequence);
-  if (fs::is_regular_file(path / "groundtruth.txt", error)) {
-    sequence.groundtruth = path / "groundtruth.txt";
+  PairFolders(left, right, options.frames_per_second, sequence);
+  for (const char* const name : {"groundtruth.txt", "pose_left.txt"}) {  // the latter of TartanAir
+    if (!sequence.groundtruth && fs::is_regular_file(path / name, error)) {
+      sequence.groundtruth = path / name;
+    }
   }
   SelectFrames(path, options.selection, sequence);
   LoadPairs(options.rectifier, sequence);

@@ -153,6 +153,19 @@ TEST_F(PoseFileTest, NumberedMatricesGetTheStampsOfTimes) {
   EXPECT_EQ(file.poses[1].timestamp, 0.4);
 }
 
+// A camera at (1, 2, 3) that looks along x of the world, with z down.
+TEST_F(PoseFileTest, PosesOfTartanAirHaveTheAxesOfOurCameras) {
+  const PoseFile file =
+      ReadPoseFile(folder_.Write("pose_left.txt", "1 2 3 0 0 0 1\n4 5 6 0 0 0 1\n"));
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_FALSE(file.has_stamps);
+  EXPECT_EQ(file.poses[1].timestamp, 1.0);
+  const Rigid3& pose = file.poses[0].world_from_cam;
+  EXPECT_EQ(pose.translation, Eigen::Vector3d(1, 2, 3));
+  EXPECT_LT((pose.rotation * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_LT((pose.rotation * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+}
+
 TEST_F(PoseFileTest, ColumnsThatAreNoQuaternionAreRefused) {
   const std::string rest(" 0 0 0 0 0 0 0 0 0\n");
   ExpectInputError([&] { Read("100 1 2 3 7.5 0.1 0.2 0.3" + rest); },

@@ -103,6 +103,45 @@ TEST_F(StereoSequenceTest, TheColourImagesOfKittiHaveTheirOwnProjection) {
   EXPECT_EQ(OpenKittiImages(folder_.path()).calibration.camera.fx, 650.0);
 }
 
+// The folder of a drive has no calibration of its own: it is that of the day.
+TEST_F(StereoSequenceTest, DrivesOfTheRawDataOfKittiAreRead) {
+  for (const char* const name : {"0000000000.png", "0000000001.png"}) {
+    WriteImage(std::string("day/drive/image_02/data/") + name, 100);
+    WriteImage(std::string("day/drive/image_03/data/") + name, 200);
+  }
+  const fs::path drive = folder_.path() / "day" / "drive";
+  folder_.Write("day/drive/image_02/timestamps.txt",
+                "2011-09-26 23:59:59.950000000\n2011-09-27 00:00:00.050000000\n");
+  folder_.Write("day/calib_cam_to_cam.txt",
+                "calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.95e-02\n"
+                "P_rect_02: 700 0 10 45 0 700 5 0 0 0 1 0\n"
+                "P_rect_03: 700 0 10 -305 0 700 5 0 0 0 1 0\n");
+  const StereoSequence sequence = OpenKittiPairs(drive);
+  EXPECT_EQ(sequence.calibration.camera.bf, 350.0);
+  ASSERT_EQ(sequence.images.frames.size(), 2u);
+  EXPECT_NEAR(sequence.images.frames[0].timestamp, 1317081599.95, 1e-6);
+  EXPECT_NEAR(sequence.calibration.frames_per_second, 10.0, 1e-3);
+  EXPECT_EQ(OpenKittiImages(drive).calibration.camera.fx, 700.0);
+  folder_.Write("day/drive/image_02/timestamps.txt", "2011-13-26 23:59:59\n2011-09-27 0:0:0\n");
+  ExpectInputError([&] { OpenKittiPairs(drive); }, {"timestamps.txt:1", "a date and a time"});
+  fs::remove(folder_.path() / "day" / "calib_cam_to_cam.txt");
+  ExpectInputError([&] { OpenKittiPairs(drive); }, {"calib_cam_to_cam.txt"});
+}
+
+TEST_F(StereoSequenceTest, PairsOfTartanAirHaveTheirTruth) {
+  for (const char* const name : {"000000", "000001"}) {
+    WriteImage(std::string("image_left/") + name + "_left.png");
+    WriteImage(std::string("image_right/") + name + "_right.png");
+  }
+  folder_.Write("pose_left.txt", "1 2 3 0 0 0 1\n1 2 4 0 0 0 1\n");
+  const ImageSequence sequence = OpenStereoFolder(folder_.path(), {.frames_per_second = 10.0});
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[1].right.filename(), "000001_right.png");
+  const auto truth = ReadGroundtruth(sequence);
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(truth->back().timestamp, sequence.frames[1].timestamp);
+}
+
 TEST_F(StereoSequenceTest, BrokenFilesOfKittiAreRefused) {
   ExpectKittiError({"has no folder image_0", "KITTI"});
   WriteKitti();

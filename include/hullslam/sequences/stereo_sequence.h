@@ -19,8 +19,10 @@ struct StereoSequence {
 // Opens a sequence of KITTI's odometry benchmark (Geiger et al., CVPR 2012): rectified images in
 // `image_0` and `image_1` (or in `image_2` and `image_3`, in colour), `calib.txt` with the 3x4
 // projections P0 to P3, and `times.txt` with seconds. The ground truth is `groundtruth.txt` or
-// `poses.txt` in the folder, or `poses/NAME.txt` of the data set. Throws InputError with file and
-// line. With a `rectifier`, it takes the place of calib.txt.
+// `poses.txt` in the folder, or `poses/NAME.txt` of the data set. So are rectified drives of its
+// raw data, with `image_00/data` and so on, `image_00/timestamps.txt`, and calib_cam_to_cam.txt in
+// the folder or above it. Throws InputError with file and line. With a `rectifier`, it takes the
+// place of the calibration.
 StereoSequence OpenKittiPairs(const std::filesystem::path& folder,
                               const FrameSelection& selection = {},
                               const std::shared_ptr<const StereoRectifier>& rectifier = nullptr);
@@ -43,7 +45,8 @@ struct StereoFolderOptions {
   FrameSelection selection = {};
 };
 
-// Opens pairs of two forms: a folder with the subfolders `left` (or `rgb`) and `right`, whose
+// Opens pairs of two forms: a folder with the subfolders `left` (or `rgb`) and `right`, or
+// `image_left` and `image_right` as of TartanAir, with the poses of pose_left.txt, whose
 // images have the same names, or the same last numbers in them, or are equally many; or a video or
 // a folder of images that show both halves of a pair side by side, the left one first. Stamps are
 // those of the names if they are seconds or nanoseconds, else index / frames_per_second; those of a
