@@ -2,10 +2,12 @@
 #include "eval/depth_registration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "camera/fit_depth.h"
 #include "eval/relative_gradient.h"
 #include "hullslam/util/check.h"
 
@@ -43,10 +45,32 @@ std::vector<cv::Point> FindSteps(const cv::Mat& depth, const cv::Rect& inside) {
   return steps;
 }
 
+// The size at which two images of these sizes are compared.
+cv::Size CommonSize(const cv::Size& grey, const cv::Size& depth) {
+  constexpr double kMostPixels = 640.0 * 480.0;
+  const cv::Size smaller = depth.width < grey.width ? depth : grey;
+  const double scale = std::min(1.0, std::sqrt(kMostPixels / smaller.area()));
+  return {static_cast<int>(std::lround(scale * smaller.width)),
+          static_cast<int>(std::lround(scale * smaller.height))};
+}
+
+cv::Mat Resized(const cv::Mat& image, const cv::Size& size, int interpolation) {
+  if (image.size() == size) {
+    return image;
+  }
+  cv::Mat resized;
+  cv::resize(image, resized, size, 0.0, 0.0, interpolation);
+  return resized;
+}
+
 }  // namespace
 
-void DepthRegistration::Add(const cv::Mat& grey, const cv::Mat& depth) {
-  Check(grey.type() == CV_8UC1 && grey.size() == depth.size(), "the two images do not fit");
+void DepthRegistration::Add(const cv::Mat& full_grey, const cv::Mat& full_depth) {
+  Check(full_grey.type() == CV_8UC1 && HaveSameShape(full_depth.size(), full_grey.size()),
+        "the two images do not fit");
+  const cv::Size size = CommonSize(full_grey.size(), full_depth.size());
+  const cv::Mat grey = Resized(full_grey, size, cv::INTER_AREA);
+  const cv::Mat depth = Resized(full_depth, size, cv::INTER_NEAREST);
   constexpr int kShare = 160;  // the shifts are multiples of this share of the image
   constexpr int kHalf = kShifts / 2;
   const cv::Point step(std::max(1, grey.cols / kShare), std::max(1, grey.rows / kShare));

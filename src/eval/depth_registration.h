@@ -12,7 +12,10 @@ namespace hullslam {
 // depth image is moved or scaled against the colour image, it changes there no more than elsewhere.
 class DepthRegistration {
  public:
-  // Adds an image (CV_8UC1) and its depth image of the same size, CV_16UC1 or CV_32FC1 in any unit.
+  // Adds an image (CV_8UC1) and its depth image of the same shape, CV_16UC1 or CV_32FC1 in any
+  // unit. Both are compared at the size of the smaller one, at most at that of 640 x 480 px: larger
+  // images have wider borders, and a smaller depth image does not know its steps to a pixel of the
+  // other.
   void Add(const cv::Mat& grey, const cv::Mat& depth);
 
   // The number of pixels at steps of the depth.

@@ -75,6 +75,26 @@ TEST(DepthRegistration, TheUnitAndUnknownDepthDoNotMatter) {
   EXPECT_LT(with_holes.edges(), units.edges());
 }
 
+// The bounds of the contrast hold for images of any size, with depth images of any other size.
+TEST(DepthRegistration, TheSizeOfTheImagesDoesNotMatter) {
+  const auto contrast_of = [](double enlarged, double depth_share) {
+    DepthRegistration registration;
+    for (int seed = 1; seed <= 4; ++seed) {
+      const Scene scene(seed);
+      cv::Mat grey;
+      cv::Mat depth;
+      cv::resize(scene.grey, grey, {}, enlarged, enlarged, cv::INTER_CUBIC);
+      cv::resize(scene.depth, depth, {}, depth_share, depth_share, cv::INTER_NEAREST);
+      registration.Add(grey, depth);
+    }
+    return registration.Contrast();
+  };
+  const double usual = contrast_of(1.0, 1.0);
+  EXPECT_GT(contrast_of(3.0, 3.0), 0.9 * usual);
+  EXPECT_GT(contrast_of(3.0, 0.4), 0.9 * usual);
+  EXPECT_GT(contrast_of(1.0, 0.4), 0.9 * usual);
+}
+
 TEST(DepthRegistration, AWallHasNoSteps) {
   DepthRegistration registration;
   const cv::Mat grey(480, 640, CV_8UC1, cv::Scalar(90));
