@@ -27,6 +27,11 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
+# Types of Eigen are the same for a program that is compiled for this processor.
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/native -G Ninja
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_CXX_FLAGS=-march=native)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/native)
+run(${WORK_DIR}/native/consumer)
 
 # The installed programs find the presets of the moved folder.
 file(COPY_FILE ${prefix}/share/hullslam/config/presets/paper.yaml

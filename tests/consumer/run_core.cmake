@@ -19,6 +19,21 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja 
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${hidden})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
+# The same program for processors with AVX2, if this one has it, as when another package forces it.
+file(STRINGS /proc/cpuinfo has_avx2 REGEX "^flags.* avx2( |$)" LIMIT_COUNT 1)
+if(has_avx2)
+  run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/avx2 -G Ninja -D CORE_ONLY=ON
+      -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_FLAGS=-mavx2 ${hidden})
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/avx2)
+  run(${WORK_DIR}/avx2/consumer)
+  # A program that is built by hand is stopped by the compiler instead.
+  file(WRITE ${WORK_DIR}/by_hand.cc "#include <hullslam/system/system.h>\nint main() {}\n")
+  execute_process(COMMAND c++ -std=c++20 -mavx2 -fsyntax-only -I${WORK_DIR}/prefix/include -isystem /usr/include/eigen3
+                  -isystem /usr/include/opencv4 ${WORK_DIR}/by_hand.cc RESULT_VARIABLE code ERROR_VARIABLE message)
+  if(code EQUAL 0 OR NOT message MATCHES "EIGEN_MAX_ALIGN_BYTES=16")
+    message(FATAL_ERROR "a program with other types of Eigen is compiled: ${message}")
+  endif()
+endif()
 
 execute_process(COMMAND ldd ${WORK_DIR}/build/consumer OUTPUT_VARIABLE loaded
                 COMMAND_ERROR_IS_FATAL ANY)

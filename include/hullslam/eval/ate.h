@@ -9,6 +9,7 @@
 #include "hullslam/eval/error_statistics.h"
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

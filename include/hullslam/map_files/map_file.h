@@ -10,6 +10,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/system/options.h"
 #include "hullslam/util/cancellation.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

@@ -9,6 +9,7 @@
 
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

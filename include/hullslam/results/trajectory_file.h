@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

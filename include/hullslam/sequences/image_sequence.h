@@ -13,6 +13,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/image_input.h"
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

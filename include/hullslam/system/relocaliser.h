@@ -8,6 +8,7 @@
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/map.h"
 #include "hullslam/system/options.h"
+#include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
 

@@ -23,6 +23,7 @@
 #include "hullslam/system/options.h"
 #include "hullslam/system/system_start.h"
 #include "hullslam/util/cancellation.h"
+#include "hullslam/util/eigen_alignment.h"
 #include "hullslam/util/mapped_vector.h"
 #include "hullslam/util/stage_timer.h"
 
