@@ -60,7 +60,17 @@ void BindKnownPoseMapper(py::module_& module) {
            "Raises InputError for a pose that is not finite or no rigid transform, and for masks\n"
            "or depth that do not fit the camera; a refused view changes nothing.")
       .def_property_readonly("map", &SnapshotOf,
-                             "A snapshot of the views as keyframes, and of the objects: Map.");
+                             "A snapshot of the views as keyframes, and of the objects: Map.")
+      .def_property_readonly(
+          "warnings",
+          [](LiveMapper& live) {
+            return WithoutGil([&] {
+              const std::lock_guard lock(live.mutex);
+              return live.mapper.warnings();
+            });
+          },
+          "What is odd about the views so far, such as poses in another unit than the depth:\n"
+          "list of str.");
 }
 
 }  // namespace hullslam::python

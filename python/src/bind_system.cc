@@ -100,10 +100,19 @@ FrameReport Track(LiveSystem& system, const py::object& image, const py::object&
   const PixelSpan rights = right.is_none() ? PixelSpan() : ImageOf(right, "the right image", size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
   std::vector<InstanceMask> in_right = MasksOf(masks_right, pixels.image);
-  return WithoutGil([&] {
-    return system.Track(timestamp, pixels.image, {depths.image, rights.image}, std::move(instances),
-                        std::move(in_right));
+  std::vector<std::string> warnings;
+  FrameReport report = WithoutGil([&] {
+    FrameReport of_frame = system.Track(timestamp, pixels.image, {depths.image, rights.image},
+                                        std::move(instances), std::move(in_right));
+    warnings = system.TakeWarnings();
+    return of_frame;
   });
+  for (const std::string& warning : warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) {
+      throw py::error_already_set();
+    }
+  }
+  return report;
 }
 
 bool AddMasks(LiveSystem& system, int64_t frame, const MaskList& masks) {
@@ -244,7 +253,9 @@ void BindSystem(py::module_& module) {
            "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
            "masks_right: Masks of the objects in the right image, or None.\n"
            "timestamp: s, larger than that of the frame before.\n"
-           "Raises InputError for anything else; a refused frame changes nothing.")
+           "Raises InputError for anything else, also for pairs that are swapped, the same or not\n"
+           "rectified, and for float32 depth that cannot be metres; a refused frame changes\n"
+           "nothing. Warns of input that can be used but hardly is what was meant.")
       .def(
           "await_masks",
           [](LiveSystem& s, bool is_on) { WithoutGil([&] { s.AwaitMasks(is_on); }); },

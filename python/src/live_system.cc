@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -71,6 +72,7 @@ void LiveSystem::Begin(SystemStart start) {
   }
   system_ = std::make_unique<System>(options_, kind_, std::move(start));
   system_->SetFrameCallback([this](const FrameReport& report) { report_ = report; });
+  taken_warnings_ = 0;
   last_stamp_.reset();
   is_finished_ = false;
 }
@@ -133,6 +135,15 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const Seco
   return std::exchange(report_, {});
 }
 
+std::vector<std::string> LiveSystem::TakeWarnings() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> warnings = Open().warnings();
+  const size_t taken = std::min(taken_warnings_, warnings.size());
+  taken_warnings_ = warnings.size();
+  warnings.erase(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(taken));
+  return warnings;
+}
+
 void LiveSystem::Finish(const std::function<bool()>& is_over) {
   const std::lock_guard lock(mutex_);
   System& system = Open();
@@ -149,6 +160,7 @@ void LiveSystem::Finish(const std::function<bool()>& is_over) {
 void LiveSystem::Reset() {
   const std::lock_guard lock(mutex_);
   Open().Reset();
+  taken_warnings_ = 0;
   last_stamp_.reset();
   is_finished_ = false;
 }

@@ -36,6 +36,8 @@ class LiveSystem {
   // otherwise as System::Track does. A refused frame changes nothing.
   FrameReport Track(double timestamp, const cv::Mat& image, const SecondImage& second,
                     std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks);
+  // The warnings of the system that this function has not returned yet.
+  std::vector<std::string> TakeWarnings();
   // `is_over` is asked from time to time whether to end early, see System::Finish.
   void Finish(const std::function<bool()>& is_over);
   void Reset();
@@ -69,6 +71,7 @@ class LiveSystem {
   std::unique_ptr<System> system_;  // null after CloseAll()
   FrameReport report_;              // of the frame that is being tracked
   std::optional<double> last_stamp_;
+  size_t taken_warnings_ = 0;
   bool is_finished_ = false;
 };
 

@@ -177,6 +177,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            std::shared_ptr<const Vocabulary> vocabulary, bool remove_dynamic)
     : sensor_(sensor),
       depth_(depth),
+      check_(sensor, depth),
       extractor_(FeaturesOf(sensor, features)),
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
@@ -193,6 +194,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
 
 BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
   CheckImages(image, sensor_);
+  check_.CheckDepth(image.depth);
   if (image.depth.empty() || image.depth.size() == image.grey.size()) {
     return BuildFitted(image, runner, awaits_masks);
   }
@@ -297,6 +299,9 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
                        ? DepthsOf(stereo_->FindDisparities(extracted, extractor_.pyramid(), runner),
                                   sensor_.camera)
                        : SampleDepths(extracted.keypoints, image.depth);
+  if (stereo_) {
+    check_.CheckPair(extracted, stereo_->right(), features.depth);
+  }
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
   features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera, sensor_.bounds);

@@ -7,10 +7,12 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "features/extractor.h"
 #include "frame/frame_detector.h"
+#include "frame/input_check.h"
 #include "frame/stereo_features.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
@@ -39,10 +41,15 @@ class FrameBuilder {
                std::shared_ptr<const Vocabulary> vocabulary = nullptr, bool remove_dynamic = true);
 
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
-  // allows, or if the sensor has another image than a depth or a right image. The masks must pass
-  // ValidateMasks().
+  // allows, if the sensor has another image than a depth or a right image, or if InputCheck refuses
+  // the images. The masks must pass ValidateMasks().
   // If a frame without masks `awaits_masks`, it keeps what AddDetections() needs.
   BuiltFrame Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks = false);
+
+  // Messages for the user about input that can be used, but hardly is what was meant (InputCheck).
+  // May be called by another thread.
+  std::vector<std::string> warnings() const { return check_.warnings(); }
+  void Warn(std::string warning) { check_.Warn(std::move(warning)); }
 
   // Adds the detections of masks that come after the frame was built, and counts the masks.
   // `input` is BuiltFrame::awaiting. May be called while another thread calls Build.
@@ -67,6 +74,7 @@ class FrameBuilder {
 
   const Sensor& sensor_;
   DepthOptions depth_;
+  InputCheck check_;
   FeatureExtractor extractor_;
   std::optional<StereoFeatures> stereo_;  // only for a stereo camera
   std::optional<FrameDetector> detector_;

@@ -79,6 +79,28 @@ double SquaredCrossings(std::span<const Eigen::Vector2d> outline, int height) {
   return sum;
 }
 
+// Throws InputError if all points of all masks are within one pixel: they are shares of the width
+// and the height. Masks of one pixel have points around its centre, so also below 0.
+void RefuseShares(std::span<const InstanceMask> masks, int width, int height) {
+  bool has_points = false;
+  for (const InstanceMask& mask : masks) {
+    for (const std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+      for (const Eigen::Vector2d& point : outline) {
+        has_points = true;
+        if (point.minCoeff() < 0.0 || point.maxCoeff() > 1.0) {
+          return;
+        }
+      }
+    }
+  }
+  if (has_points) {
+    throw InputError(fmt::format(
+        "mask 0 ('{}'): all points of the outlines are from 0 to 1, expected pixels of the {}x{} "
+        "image: shares must be multiplied by its width and height",
+        masks.front().label, width, height));
+  }
+}
+
 }  // namespace
 
 void ValidateMasks(std::span<const InstanceMask> masks, int width, int height) {
@@ -97,6 +119,7 @@ void ValidateMasks(std::span<const InstanceMask> masks, int width, int height) {
       }
     }
   }
+  RefuseShares(masks, width, height);
 }
 
 }  // namespace hullslam

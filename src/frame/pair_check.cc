@@ -12,11 +12,10 @@
 namespace hullslam {
 namespace {
 
-constexpr int kMostBits = 50;          // of a match that counts here
-constexpr double kSecondBest = 0.8;    // a match has at most this share of the bits of the next one
-constexpr double kMostRows = 0.08;     // of the height; a pair that is set up badly is off by less
-constexpr size_t kFewestMatches = 30;  // fewer say nothing
-constexpr double kSame = 0.05;         // px; two copies of one image differ by less
+constexpr int kMostBits = 50;        // of a match that counts here
+constexpr double kSecondBest = 0.8;  // a match has at most this share of the bits of the next one
+constexpr double kMostRows = 0.08;   // of the height; a pair that is set up badly is off by less
+constexpr double kSame = 0.05;       // px; two copies of one image differ by less
 // Calibrated pairs are off by a few tenths of a pixel. Matches are sought in rows that are two
 // pixels away, so a pair that is off by more loses most of them.
 constexpr double kMostRowDifference = 1.5;  // px
@@ -25,11 +24,16 @@ double MedianOf(std::vector<double> values) { return Median(std::move(values)); 
 
 }  // namespace
 
-void PairCheck::Add(const cv::Mat& left, const cv::Mat& right) {
+PairCheck::PairRows PairCheck::Add(const cv::Mat& left, const cv::Mat& right) {
   FeatureExtractor extractor{FeatureOptions()};
-  const ExtractedFeatures a = extractor.Extract(left);
-  const ExtractedFeatures b = extractor.Extract(right);
-  const double most_rows = kMostRows * left.rows;
+  const ExtractedFeatures of_left = extractor.Extract(left);
+  return Add(of_left, extractor.Extract(right), left.rows);
+}
+
+PairCheck::PairRows PairCheck::Add(const ExtractedFeatures& a, const ExtractedFeatures& b,
+                                   int height) {
+  const double most_rows = kMostRows * height;
+  PairRows counts;
   for (size_t i = 0; i < a.keypoints.size(); ++i) {
     int best = kMostBits + 1;
     int second = 256;
@@ -52,8 +56,11 @@ void PairCheck::Add(const cv::Mat& left, const cv::Mat& right) {
       const Eigen::Vector2d moved = (a.keypoints[i].raw - b.keypoints[found].raw).cast<double>();
       columns_.push_back(moved.x());
       rows_.push_back(moved.y());
+      ++counts.matches;
+      counts.off += std::abs(moved.y()) > kMostRowDifference ? 1 : 0;
     }
   }
+  return counts;
 }
 
 std::optional<std::string> PairCheck::FindFault() const {

@@ -28,6 +28,8 @@ class StereoFeatures {
   // where none was found. Other keypoints may have been taken out.
   std::vector<float> FindDisparities(const ExtractedFeatures& left,
                                      const ImagePyramid& left_pyramid, TaskRunner& runner);
+  // The features of the right image of the last call of Extract.
+  const ExtractedFeatures& right() const { return right_; }
 
  private:
   FeatureExtractor extractor_;

@@ -149,8 +149,32 @@ BuiltFrame System::Build(const ImageInput& image) {
   for (const auto* const masks : {&image.masks, &image.right_masks}) {
     ValidateMasks(*masks, options_.camera.width, options_.camera.height);
   }
-  return frame_builder_->Build(image, *runner_, awaits_masks_);
+  BuiltFrame built = frame_builder_->Build(image, *runner_, awaits_masks_);
+  FitDepthError(image);
+  return built;
 }
+
+// A depth may be taken from half of a pixel of the depth image beside the keypoint, and the
+// disparity of a depth camera is known to a part of a pixel of its own. The frame with the first
+// depth image is not tracked yet, so nobody has used the error of a depth.
+void System::FitDepthError(const ImageInput& image) {
+  if (has_depth_size_ || image.depth.empty()) {
+    return;
+  }
+  has_depth_size_ = true;
+  const double ratio = static_cast<double>(image.grey.cols) / image.depth.cols;
+  if (ratio > 1.0) {
+    options_.depth.error.disparity_sigma *= ratio;
+    sensor_.depth_error = options_.depth.error;
+    frame_builder_->Warn(fmt::format(
+        "the depth images of {}x{} px are fitted to the images of {}x{} px; depth.disparity_sigma "
+        "becomes {:g}",
+        image.depth.cols, image.depth.rows, image.grey.cols, image.grey.rows,
+        options_.depth.error.disparity_sigma));
+  }
+}
+
+std::vector<std::string> System::warnings() const { return frame_builder_->warnings(); }
 
 TrackedFrame System::Track(BuiltFrame built) {
   CheckStamp(built.frame->timestamp);

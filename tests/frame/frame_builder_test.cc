@@ -173,6 +173,32 @@ TEST_F(FrameBuilderTest, BothImagesOfAPairKeepCornersOnStraightEdges) {
   EXPECT_EQ(known(false), known(true));
 }
 
+TEST_F(FrameBuilderTest, PairsThatAreNoneAreRefused) {
+  ImageInput pair = MakePair();
+  const Sensor stereo = StereoSensor();
+  FrameBuilder builder(stereo, DepthOptions(), FewFeatures());
+  EXPECT_NO_THROW(builder.Build(pair, runner_));
+  pair.right = pair.grey;
+  FrameBuilder other(stereo, DepthOptions(), FewFeatures());
+  ExpectInputError([&] { other.Build(pair, runner_); }, {"the same image"});
+  pair = MakePair();
+  std::swap(pair.grey, pair.right);
+  FrameBuilder swapped(stereo, DepthOptions(), FewFeatures());
+  ExpectInputError([&] { swapped.Build(pair, runner_); }, {"swapped"});
+}
+
+TEST_F(FrameBuilderTest, DepthInAnotherUnitIsNoticed) {
+  ImageInput image = MakeImage();
+  DepthOptions depth;
+  depth.units_per_metre = 100.0;
+  FrameBuilder builder(sensor_, depth, FewFeatures());
+  builder.Build(image, runner_);
+  ASSERT_EQ(builder.warnings().size(), 1U);
+  EXPECT_NE(builder.warnings()[0].find("DepthMapFactor 100"), std::string::npos);
+  image.depth.convertTo(image.depth, CV_32FC1);
+  ExpectInputError([&] { Build(image); }, {"float32", "expected metres"});
+}
+
 TEST_F(FrameBuilderTest, MasksOfTheRightImageAddLines) {
   ImageInput pair = MakePair();
   pair.masks = {Square("cup", 30, 160, 50), Square("book", 200, 60, 80)};

@@ -63,6 +63,15 @@ TEST(InstanceMask, AMaskThatCannotBeUsedIsRefusedWithItsNumber) {
   }
 }
 
+TEST(InstanceMask, SharesOfTheImageAreRefused) {
+  const InstanceMask shares{.label = "cup", .outlines = {{{0.2, 0.3}, {0.6, 0.3}, {0.4, 0.9}}}};
+  const std::vector<InstanceMask> masks = {shares, shares};
+  ExpectInputError([&] { ValidateMasks(masks, kMaskWidth, kMaskHeight); },
+                   {"mask 0 ('cup')", "from 0 to 1", "expected pixels of the 640x480 image"});
+  const std::vector<InstanceMask> mixed = {shares, GoodMask()};
+  EXPECT_NO_THROW(ValidateMasks(mixed, kMaskWidth, kMaskHeight)) << "one may be a pixel";
+}
+
 TEST(InstanceMask, AnEmbeddingNeedsADirection) {
   InstanceMask mask = GoodMask();
   mask.embedding = {300.0F, -0.5F};

@@ -30,10 +30,10 @@ struct InstanceMask {
 };
 
 // Throws InputError for a mask without a label, a score that is not between 0 and 1, an outline of
-// fewer than three or more than 100 000 points, a point that is not finite or is farther outside
-// the image (width x height px) than the image is wide or high, outlines that go up and down so
-// often that filling them would take seconds, and an embedding that has no direction, because it is
-// zero or not finite. The message has the number of the mask and the reason.
+// fewer than three or more than 100 000 points, a point that is not finite or farther outside the
+// image (width x height px) than that is wide or high, outlines that would take seconds to fill,
+// shares of the image (0 to 1) instead of pixels in all masks, and an embedding without a direction
+// (zero or not finite). The message has the number of the mask and the reason.
 void ValidateMasks(std::span<const InstanceMask> masks, int width, int height);
 
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "hullslam/frame/instance_mask.h"
@@ -48,6 +49,9 @@ class KnownPoseMapper {
   Map Snapshot();
   // The numbers of masks that gave detections, and of rejected masks and objects by reason.
   ObjectCounts counts() const;
+  // Messages for the user about input that can be used, but hardly is what was meant: depth in
+  // another unit, and poses in another unit than the depth.
+  std::vector<std::string> warnings() const;
 
  private:
   struct State;

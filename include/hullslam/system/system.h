@@ -83,8 +83,9 @@ class System {
   // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
   // `masks` are those of the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
   // makes them from images), `right_masks` those in the right image, which add lines of the same
-  // objects. Throws InputError for images of another type or size and for masks
-  // that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
+  // objects. Throws InputError for images of another type or size, for depth in metres that cannot
+  // be metres, for pairs that are swapped, twice the same or not rectified, and for masks that
+  // ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
   // refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
@@ -175,21 +176,30 @@ class System {
   size_t sized_objects() const;
   // The counts of masks. May be called like times().
   ObjectCounts object_counts() const;
+  // Messages for the user about input that can be used, but hardly is what was meant: depth in
+  // another unit, a baseline that no camera has, pairs that are not taken at the same time. More
+  // come while frames are built; Reset() begins again.
+  std::vector<std::string> warnings() const;
+  // The options as they are used: if the depth images are smaller than the images, their
+  // disparities are less precise (depth.disparity_sigma).
+  const SystemOptions& options() const { return options_; }
 
  private:
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
   void KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input);
   uint32_t OldestRevision() const;
+  void FitDepthError(const ImageInput& image);
   void CheckStamp(double timestamp) const;
   void CheckVectors(const Frame& frame);
 
-  const SystemOptions options_;
+  SystemOptions options_;
   const PipelineKind kind_;
   SystemStart start_;
   bool is_localization_only_ = false;
   size_t vector_length_ = 0;  // of InstanceMask::embedding in all masks; 0: not known yet
-  const Sensor sensor_;
+  Sensor sensor_;
+  bool has_depth_size_ = false;  // FitDepthError() knows the size of the depth images
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;
   std::atomic<bool> is_tracking_ = false;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "features/extractor.h"
+#include "frame/pair_check.h"
+#include "hullslam/camera/depth.h"
+#include "hullslam/frame/sensor.h"
+
+namespace hullslam {
+
+// Finds input that a run would take without a word, though it cannot be what the user meant: depth
+// in another unit, pairs that are no pairs, cameras that do not take their images at the same time.
+// Only the first frames are looked at, and later ones now and then.
+class InputCheck {
+ public:
+  explicit InputCheck(const Sensor& sensor, const DepthOptions& depth);
+
+  // Throws InputError for a depth image in metres (CV_32FC1) whose values cannot be metres.
+  void CheckDepth(const cv::Mat& depth);
+  // The features of both images of a pair, and the depths of the left ones, m, 0 where unknown.
+  // Throws InputError for pairs that PairCheck finds a fault in.
+  void CheckPair(const ExtractedFeatures& left, const ExtractedFeatures& right,
+                 std::span<const float> depths);
+
+  // Messages for the user about input that can be used. May be called by another thread.
+  std::vector<std::string> warnings() const;
+  void Warn(std::string warning);
+
+ private:
+  void CheckDepthsOfPairs();
+
+  const Sensor& sensor_;
+  const DepthOptions depth_;
+  bool has_depth_ = false;  // a depth image was looked at
+  size_t pairs_ = 0;        // that were given
+  size_t compared_ = 0;     // that were compared
+  size_t useful_ = 0;       // that had enough matches
+  size_t off_ = 0;          // in which most points are in other rows
+  bool is_late_ = false;    // a warning says so
+  PairCheck pair_check_;
+  std::vector<float> depths_;  // of the first pairs, m
+  mutable std::mutex mutex_;   // guards the warnings
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace hullslam

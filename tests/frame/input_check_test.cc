@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/input_check.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "features/test_images.h"
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+class InputCheckTest : public ::testing::Test {
+ protected:
+  // The image moved to the left and down.
+  static cv::Mat Move(const cv::Mat& image, int left, int down) {
+    cv::Mat moved(image.size(), CV_8UC1, cv::Scalar(120));
+    const cv::Rect from(left, 0, image.cols - left, image.rows - down);
+    image(from).copyTo(moved(cv::Rect(0, down, from.width, from.height)));
+    return moved;
+  }
+
+  static DepthOptions WithUnits(double per_metre) {
+    DepthOptions options;
+    options.units_per_metre = per_metre;
+    return options;
+  }
+
+  static Sensor Stereo(double baseline) {
+    Sensor sensor;
+    sensor.kind = SensorKind::kStereo;
+    sensor.camera = {.fx = 500, .fy = 500, .cx = 320, .cy = 240, .width = 640, .height = 480};
+    sensor.camera.bf = baseline * sensor.camera.fx;
+    return sensor;
+  }
+
+  // Gives pairs that are moved down by these rows. All their points have this depth.
+  static void Add(const std::vector<int>& rows, double depth, InputCheck& check) {
+    FeatureExtractor extractor{FeatureOptions()};
+    const cv::Mat image = MakeCornerImage();
+    const ExtractedFeatures left = extractor.Extract(image);
+    const std::vector<float> depths(left.keypoints.size(), static_cast<float>(depth));
+    for (const int row : rows) {
+      check.CheckPair(left, extractor.Extract(Move(image, 20, row)), depths);
+    }
+  }
+};
+
+TEST_F(InputCheckTest, PlausibleDepthIsNoFault) {
+  const Sensor sensor;
+  InputCheck check(sensor, WithUnits(5000.0));
+  check.CheckDepth(cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000)));
+  EXPECT_TRUE(check.warnings().empty());
+  InputCheck metres(sensor, {});
+  metres.CheckDepth(cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0)));
+  EXPECT_TRUE(metres.warnings().empty());
+}
+
+TEST_F(InputCheckTest, OnlyTheFirstDepthThatIsKnownCounts) {
+  const Sensor sensor;
+  InputCheck check(sensor, WithUnits(1000.0));
+  check.CheckDepth(cv::Mat(48, 64, CV_16UC1, cv::Scalar(0)));
+  for (int i = 0; i < 3; ++i) {
+    check.CheckDepth(cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000)));
+  }
+  ASSERT_EQ(check.warnings().size(), 1U);
+  EXPECT_NE(check.warnings()[0].find("is 10 m with DepthMapFactor 1000"), std::string::npos)
+      << check.warnings()[0];
+}
+
+TEST_F(InputCheckTest, DepthInMetresThatCannotBeMetresIsRefused) {
+  const Sensor sensor;
+  InputCheck check(sensor, {});
+  cv::Mat raw(48, 64, CV_32FC1, cv::Scalar(9000.0));
+  ExpectInputError([&] { check.CheckDepth(raw); }, {"float32", "9000", "expected metres"});
+  raw.rowRange(0, 8).setTo(3.0);  // of a scene with a sky
+  check.CheckDepth(raw);
+  EXPECT_EQ(check.warnings().size(), 1U);
+}
+
+TEST_F(InputCheckTest, PairsInEqualRowsAreNoFault) {
+  const Sensor sensor = Stereo(0.12);
+  InputCheck check(sensor, {});
+  Add(std::vector<int>(40, 0), 3.0, check);
+  EXPECT_TRUE(check.warnings().empty());
+}
+
+TEST_F(InputCheckTest, RigsOfCarsAreNoFault) {
+  for (const double baseline : {0.06, 0.54, 2.0}) {
+    const Sensor sensor = Stereo(baseline);
+    InputCheck check(sensor, {});
+    Add({0, 0, 0}, 30.0, check);
+    EXPECT_TRUE(check.warnings().empty()) << check.warnings()[0];
+  }
+}
+
+TEST_F(InputCheckTest, PairsThatAreNoneAreRefused) {
+  const Sensor sensor = Stereo(0.12);
+  InputCheck check(sensor, {});
+  FeatureExtractor extractor{FeatureOptions()};
+  const ExtractedFeatures features = extractor.Extract(MakeCornerImage());
+  const std::vector<float> depths(features.keypoints.size());
+  for (int i = 0; i < 5; ++i) {
+    ExpectInputError([&] { check.CheckPair(features, features, depths); }, {"the same image"});
+  }
+}
+
+TEST_F(InputCheckTest, RowsThatDisagreeNowAndThenAreThoseOfALateImage) {
+  const Sensor sensor = Stereo(0.12);
+  InputCheck check(sensor, {});
+  Add(std::vector<int>(3, 0), 3.0, check);
+  Add(std::vector<int>(40, 6), 3.0, check);
+  ASSERT_EQ(check.warnings().size(), 1U);
+  EXPECT_NE(check.warnings()[0].find("taken at the same time"), std::string::npos);
+}
+
+TEST_F(InputCheckTest, BaselinesAndDepthsThatNoCameraHasAreNamed) {
+  const Sensor tiny = Stereo(0.0002);
+  EXPECT_NE(InputCheck(tiny, {}).warnings().at(0).find("the baseline is 0.0002 m"),
+            std::string::npos);
+  const Sensor sensor = Stereo(2.9);
+  InputCheck check(sensor, {});
+  Add({0, 0, 0}, 2000.0, check);
+  ASSERT_EQ(check.warnings().size(), 1U);
+  EXPECT_NE(check.warnings()[0].find("2e+03 m, with a baseline of 2.9 m"), std::string::npos)
+      << check.warnings()[0];
+}
+
+}  // namespace
+}  // namespace hullslam
