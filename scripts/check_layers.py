@@ -33,10 +33,11 @@ LEVELS = {
     "settings": 13, "map_files": 13,
     "results": 14,
     "sequences": 15,
-    "masks": 16, "view": 16,
-    "exports": 17, "live": 17, "segmentation": 17,
+    "datasets": 16, "masks": 16,
+    "view": 17,
+    "exports": 18, "live": 18, "segmentation": 18,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
-    "run": 18,
+    "run": 19,
 }
 PROGRAM_SIDE = {"run"}
 

@@ -50,6 +50,7 @@ CONTENTS = {
     "settings": "YAML, ORB-SLAM3's keys",
     "results": "trajectories, objects, PLY",
     "sequences": "TUM, ICL, EuRoC, video",
+    "datasets": "the table of data sets",
     "masks": "seven formats",
     "view": "data of the page",
     "live": "live view in a browser",

@@ -21,6 +21,7 @@ from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, 
                     TrajectoryErrors, __version__, default_settings, evaluate_trajectory, export,
                     open_euroc, open_icl, open_images, open_masks, open_run, open_tum, preset_names,
                     read_map, read_trajectory, report, scene)
+from ._open import open  # noqa: A004
 from ._settings import Settings
 
 InputError.__doc__ = """A file, a setting or an argument is wrong.
@@ -31,5 +32,5 @@ The message names the file and line, or the argument and its value, and says wha
 __all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles",
            "Masks", "Run", "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System",
            "TrackResult", "Trajectory", "TrajectoryErrors", "__version__", "default_settings",
-           "evaluate_trajectory", "export", "open_euroc", "open_icl", "open_images", "open_masks",
+           "evaluate_trajectory", "export", "open", "open_euroc", "open_icl", "open_images", "open_masks",
            "open_run", "open_tum", "preset_names", "read_map", "read_trajectory", "report", "scene"]

@@ -499,6 +499,10 @@ def read_map(path: _Path) -> Map:
     """Reads a map to look at it. To go on with a map, give its path to System. Raises InputError
     if the file is damaged.
     """
+def open_dataset(path: _Path, settings: _Path | None, mode: str | None, preset: str,
+                 overrides: list[str],
+                 choices: dict[str, str]) -> tuple[ImageSequence, SettingsTable]:
+    """hullslam.open() without its conveniences."""
 def open_tum(folder: _Path, settings: SettingsTable, *, depth: bool = True,
              associations: _Path | None = None) -> ImageSequence:
     """Opens a sequence in TUM's format (docs/datasets.md).

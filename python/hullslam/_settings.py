@@ -54,6 +54,11 @@ def _flatten(values, prefix=""):
             yield key, value
 
 
+def overrides_of(values):
+    """The keyword arguments of Settings as key=value."""
+    return [f"{key}={_to_text(key, value)}" for key, value in _flatten(values)]
+
+
 class Group:
     """The settings whose keys begin with the same words, such as `settings.objects.start`."""
 
@@ -97,10 +102,11 @@ class Settings(_core.SettingsTable):
     """
 
     def __init__(self, file=None, *, preset=None, **values):
-        if preset is not None:
-            preset = os.fspath(preset)
-        overrides = [f"{key}={_to_text(key, value)}" for key, value in _flatten(values)]
-        super().__init__(file, preset, overrides)
+        if isinstance(file, _core.SettingsTable):  # of open()
+            super().__init__(file)
+        else:
+            preset = None if preset is None else os.fspath(preset)
+            super().__init__(file, preset, overrides_of(values))
         for warning in self.warnings:
             warnings.warn(warning, stacklevel=2)
 

@@ -2,7 +2,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +14,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "hullslam/datasets/dataset.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
@@ -28,8 +32,15 @@ struct FrameList {
   ImageSequence sequence;
   std::vector<MaskFrame> names;
   PinholeCamera camera;
-  std::mutex loading;  // ImageSequence::load is called by one thread at a time
+  SensorKind sensor = SensorKind::kRgbd;
+  std::vector<std::string> notes = {};  // what was found, if open() has found it
+  std::mutex loading;                   // ImageSequence::load is called by one thread at a time
 };
+
+constexpr std::array<std::pair<const char*, SensorKind>, 3> kModes = {
+    {{"rgbd", SensorKind::kRgbd},
+     {"mono", SensorKind::kMonocular},
+     {"stereo", SensorKind::kStereo}}};
 
 struct SequenceFrame {
   ImageInput input;
@@ -40,7 +51,8 @@ struct SequenceFrame {
 struct MaskFiles {
   std::unique_ptr<const MaskSource> source;
   std::vector<MaskFrame> frames;
-  cv::Size size;
+  cv::Size size;                           // of the images as read
+  std::function<void(InstanceMask&)> fit;  // ImageSequence::fit_mask
 };
 
 // Python's rule for indices: negative ones count from the end.
@@ -98,6 +110,34 @@ std::unique_ptr<FrameList> OpenImages(const std::filesystem::path& path,
       [&] { return MakeList(OpenImageStream(path, {.frames_per_second = fps}).images, settings); });
 }
 
+// What open() in __init__.py returns, whose arguments it has.
+std::pair<std::unique_ptr<FrameList>, SettingsTable> OpenAny(
+    const std::filesystem::path& path, const std::optional<std::filesystem::path>& settings,
+    const std::optional<std::string>& mode, const std::string& preset,
+    const std::vector<std::string>& overrides, const DatasetChoices& choices) {
+  std::optional<SensorKind> sensor;
+  if (mode) {
+    sensor = Choose<SensorKind>("mode", *mode, {kModes.begin(), kModes.end()});
+  }
+  return WithoutGil([&] {
+    const FoundDataset found = FindDataset(path, sensor);
+    OpenedDataset opened =
+        OpenDataset(*found.dataset, {.path = path,
+                                     .sensor = found.sensor,
+                                     .settings = settings.value_or(std::filesystem::path()),
+                                     .preset = preset,
+                                     .overrides = overrides,
+                                     .choices = choices});
+    SettingsTable table{.options = std::move(opened.settings.options),
+                        .warnings = std::move(opened.settings.notes.warnings)};
+    std::unique_ptr<FrameList> list = MakeList(std::move(opened.sequence), table);
+    list->sensor = found.sensor;
+    list->notes = std::move(opened.notes);
+    list->notes.insert(list->notes.begin(), found.note);
+    return std::pair(std::move(list), std::move(table));
+  });
+}
+
 SequenceFrame Load(FrameList& list, py::ssize_t index) {
   const size_t i = ToIndex(index, list.sequence.frames.size());
   return WithoutGil([&] {
@@ -111,8 +151,14 @@ MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list
                         const std::string& format) {
   return WithoutGil([&] {
     const PinholeCamera& camera = list.camera;
-    MaskFiles files{.source = nullptr, .frames = list.names, .size = {camera.width, camera.height}};
-    files.source = OpenMasks({path, format, camera.width, camera.height}, files.frames);
+    const ImageSequence& sequence = list.sequence;
+    MaskFiles files{.source = nullptr,
+                    .frames = list.names,
+                    .size = sequence.read_width > 0
+                                ? cv::Size(sequence.read_width, sequence.read_height)
+                                : cv::Size(camera.width, camera.height),
+                    .fit = sequence.fit_mask};
+    files.source = OpenMasks({path, format, files.size.width, files.size.height}, files.frames);
     return files;
   });
 }
@@ -120,7 +166,12 @@ MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list
 MaskList ReadMasks(const MaskFiles& files, py::ssize_t index) {
   const size_t i = ToIndex(index, files.frames.size());
   return WithoutGil([&] {
-    return MaskList{.masks = files.source->Read(files.frames[i]).masks, .size = files.size};
+    MaskList list{.masks = files.source->Read(files.frames[i]).masks, .size = files.size};
+    if (files.fit != nullptr) {
+      std::ranges::for_each(list.masks, files.fit);
+      list.size = {};
+    }
+    return list;
   });
 }
 
@@ -139,7 +190,14 @@ void BindFrame(py::module_& module) {
             return f.input.depth.empty() ? py::object(py::none()) : ToArray(f.input.depth);
           },
           "(height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in metres;\n"
-          "None without depth.");
+          "None without depth.")
+      .def_property_readonly(
+          "right",
+          [](const SequenceFrame& f) -> py::object {
+            return f.input.right.empty() ? py::object(py::none()) : ToArray(f.input.right);
+          },
+          "(height, width) uint8, the right image of a stereo camera, rectified as `image`; None\n"
+          "without one.");
 }
 
 }  // namespace
@@ -164,12 +222,29 @@ void BindSequences(py::module_& module) {
           },
           "(N,) float64, s.")
       .def_property_readonly(
+          "mode",
+          [](const FrameList& list) {
+            return std::ranges::find(kModes, list.sensor,
+                                     &std::pair<const char*, SensorKind>::second)
+                ->first;
+          },
+          "'rgbd', 'mono' or 'stereo': the mode of a System for these frames, as open() has\n"
+          "found it.")
+      .def_readonly("notes", &FrameList::notes,
+                    "What open() has found: list of str; empty without it.")
+      .def_property_readonly(
+          "warnings", [](const FrameList& list) { return list.sequence.warnings; },
+          "Faults in the files that do not end a run: list of str.")
+      .def_property_readonly(
           "groundtruth",
           [](const FrameList& list) -> std::optional<PoseList> {
             std::optional<Trajectory> truth = ReadGroundtruth(list.sequence);
             return truth ? std::optional(PoseList{std::move(*truth)}) : std::nullopt;
           },
           "The true Trajectory; None if the data set has none.");
+  module.def("open_dataset", &OpenAny, py::arg("path"), py::arg("settings"), py::arg("mode"),
+             py::arg("preset"), py::arg("overrides"), py::arg("choices"),
+             "hullslam.open() without its conveniences.");
   module.def("open_tum", &OpenTum, py::arg("folder"), py::arg("settings"), py::kw_only(),
              py::arg("depth") = true, py::arg("associations") = py::none(),
              "Opens a sequence in TUM's format (docs/datasets.md).\n\n"

@@ -75,6 +75,7 @@ void BindSettings(py::module_& module) {
                             "The registry of settings. hullslam.Settings is derived from it.")
       .def(py::init(&MakeTable), py::arg("file") = py::none(), py::arg("preset") = py::none(),
            py::arg("overrides") = std::vector<std::string>())
+      .def(py::init<const SettingsTable&>(), py::arg("other"), "A copy.")
       .def_readonly("warnings", &SettingsTable::warnings,
                     "What the reader has to say about the settings: list of str.")
       .def("entries", &Entries,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/run_sequence.h"
 #include "eval/object_metrics.h"
 #include "files/canonical_path.h"
 #include "hullslam/map_files/map_file.h"
@@ -13,7 +14,6 @@
 #include "map/islands.h"
 #include "results/finished_run.h"
 #include "scene/make_scene.h"
-#include "sequences/run_sequence.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
 

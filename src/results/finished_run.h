@@ -17,7 +17,7 @@
 
 namespace hullslam {
 
-// The sequence that a run has read. OpenRunSequence() (sequences/run_sequence.h) opens it again.
+// The sequence that a run has read. OpenRunSequence() (datasets/run_sequence.h) opens it again.
 struct SequenceOfRun {
   std::string path;     // as the user gave it; empty if the run does not say it
   std::string dataset;  // ImageSequence::dataset, such as "tum"; empty if it is not known

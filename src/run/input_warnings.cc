@@ -5,38 +5,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "camera/fit_depth.h"
 #include "eval/depth_registration.h"
 #include "eval/mask_registration.h"
 #include "frame/dynamic_mask.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
-#include "util/median.h"
 #include "util/split_names.h"
 
 namespace hullslam {
 namespace {
-
-// The median of the known values of a depth image, in its units.
-template <typename Value>
-std::optional<double> MedianOf(const cv::Mat& depth) {
-  std::vector<Value> known;
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* const row = depth.ptr<Value>(y);
-    std::copy_if(row, row + depth.cols, std::back_inserter(known),
-                 [](Value value) { return value > Value(0); });
-  }
-  return known.empty() ? std::nullopt : std::optional<double>(Median(std::move(known)));
-}
 
 // Warns about the classes of a setting that no mask has.
 void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
@@ -68,28 +50,6 @@ void RefuseMasksOfRectifiedImages(double as_given, double fitted) {
 
 }  // namespace
 
-void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
-                            const DepthOptions& options) {
-  constexpr double kNearest = 0.3;   // m
-  constexpr double kFarthest = 5.0;  // m
-  const bool is_in_units = depth.type() == CV_16UC1;
-  if (!is_in_units && depth.type() != CV_32FC1) {
-    return;
-  }
-  const std::optional<double> median =
-      is_in_units ? MedianOf<uint16_t>(depth) : MedianOf<float>(depth);
-  const double metres = median.value_or(0.0) / (is_in_units ? options.units_per_metre : 1.0);
-  if (!median || (metres >= kNearest && metres <= kFarthest)) {
-    return;
-  }
-  const std::string reason = is_in_units
-                                 ? fmt::format("with DepthMapFactor {:g}", options.units_per_metre)
-                                 : std::string("in the units of the file");
-  PrintError("warning: {}: the median depth is {:.3g} m {}, expected {} to {} m; is {} right?\n",
-             file.string(), metres, reason, kNearest, kFarthest,
-             is_in_units ? "DepthMapFactor" : "its unit (--float-units of rgbd_bag)");
-}
-
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera) {
   constexpr size_t kFrames = 7;
   constexpr size_t kLeastEdges = 2000;  // px
@@ -102,7 +62,7 @@ void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera&
     try {
       const ImageInput image = sequence.load(sequence.frames[i], camera);
       if (!image.depth.empty()) {
-        registration.Add(image.grey, FitDepth(image.depth, image.grey.size()));
+        registration.Add(image.grey, image.depth);
       }
     } catch (const InputError&) {  // the run will report this image
       continue;
@@ -114,30 +74,6 @@ void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera&
         "(contrast {:.2f}, expected at least {}); are the depth images registered to the colour "
         "images?\n",
         registration.Contrast(), kLeastContrast);
-  }
-}
-
-void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
-                         const std::filesystem::path& sequence) {
-  constexpr double kMost = 0.005;  // of the focal length; a new calibration differs by less
-  std::filesystem::path file;
-  PinholeCamera own;
-  try {
-    file = FindDefaultSettings(sequence, FindConfigFolder());
-    own = ReadSettings(file).camera;
-  } catch (const InputError&) {
-    return;  // the sequence has no settings of its own
-  }
-  for (const auto& [name, value, expected] :
-       {std::tuple("fx", camera.fx, own.fx), std::tuple("fy", camera.fy, own.fy),
-        std::tuple("cx", camera.cx, own.cx), std::tuple("cy", camera.cy, own.cy)}) {
-    if (std::abs(value - expected) > kMost * own.fx) {
-      PrintError(
-          "warning: {}: Camera.{} is {:g}, but the settings of this sequence, {}, have {:g}; are "
-          "these the settings of another camera?\n",
-          given.string(), name, value, file.string(), expected);
-      return;
-    }
   }
 }
 

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
-#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
@@ -18,18 +16,10 @@ namespace hullslam {
 // Each function below prints a warning on stderr if the input can be used but is probably not what
 // the user meant.
 
-// Warns if the median depth of an image is outside the usual range of indoor sensors (0.3 to 5 m).
-// DepthMapFactor may then be wrong.
-void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
-                            const DepthOptions& options);
 // Warns if the depth images are not registered to their colour images: where the depth has a step,
 // the colour then changes no more than elsewhere (DepthRegistration). Uses seven images. Prints
 // nothing if they have too few steps.
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera);
-// Warns if the settings that the user gave have other intrinsics than those that belong to the
-// sequence: camera.yaml in its folder, or the file that is found by its name.
-void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
-                         const std::filesystem::path& sequence);
 // Warns if no mask has a class that tracking.dynamic_classes or objects.sizes names. Classes that
 // are there by default are not reported. Also warns of sizes above 3 m, which may be in another
 // unit.

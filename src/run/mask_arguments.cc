@@ -57,6 +57,12 @@ void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& 
       ->capture_default_str();
 }
 
+MaskRequest RequestOf(const std::filesystem::path& path, const std::string& format,
+                      const ImageSequence& sequence, const PinholeCamera& camera) {
+  return {path, format, sequence.read_width > 0 ? sequence.read_width : camera.width,
+          sequence.read_height > 0 ? sequence.read_height : camera.height};
+}
+
 SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)
     : path_(request.path.string()), frames_(std::move(frames)) {
   if (!request.path.empty()) {

@@ -31,6 +31,11 @@ void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& 
 // positional argument.
 void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
 
+// The request for masks of the images of a sequence as they are read. `camera` is that of the
+// images that the sequence gives.
+MaskRequest RequestOf(const std::filesystem::path& path, const std::string& format,
+                      const ImageSequence& sequence, const PinholeCamera& camera);
+
 // The masks of a sequence. The constructor checks all of them. If the path is empty, there are no
 // masks.
 class SequenceMasks {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/run_arguments.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <system_error>
@@ -71,30 +73,31 @@ void AddGroundtruth(CLI::App& app, const DatasetHelp& help, RunArguments& argume
       ->type_name("FILE");
 }
 
-}  // namespace
-
-void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
-                     std::vector<std::string>& positional) {
-  app.add_option("ARGUMENTS", positional,
-                 "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
-                     ", in the order of ORB-SLAM2");
+// The options for masks and for lists of images. Those of one kind of sensor are left out unless
+// the program has it.
+void AddSensorArguments(CLI::App& app, const DatasetHelp& help, bool has_depth, bool has_pairs,
+                        RunArguments& arguments) {
   AddSettingsArgument(app, help.settings, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddVocabularyArgument(app, arguments.vocabulary);
-  if (arguments.sensor == SensorKind::kRgbd) {
+  if (has_depth) {
     app.add_option("--associations", arguments.associations,
                    "file with one pair of images per line: " + help.associations);
   }
   AddGroundtruth(app, help, arguments);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
-  if (arguments.sensor == SensorKind::kStereo) {
+  if (has_pairs) {
     AddRightMaskArgument(app, arguments.masks_right);
   }
   AddMaskAllArgument(app, arguments.mask_all);
-  if (arguments.sensor == SensorKind::kStereo) {
+  if (has_pairs) {
     AddRightMaskAllArgument(app, arguments.mask_all_right);
   }
   AddNetworkArguments(app, arguments.segment, arguments.segment_every);
+}
+
+// The options that all SLAM programs have.
+void AddCommonArguments(CLI::App& app, RunArguments& arguments) {
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);
   app.add_option("--save-map", arguments.save_map,
@@ -138,6 +141,37 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
       "the run failed, was interrupted (the results up to then are written, and summary.json says "
       "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not save its "
       "map or its recording or print its report");
+}
+
+}  // namespace
+
+void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
+                     std::vector<std::string>& positional) {
+  app.add_option("ARGUMENTS", positional,
+                 "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
+                     ", in the order of ORB-SLAM2");
+  AddSensorArguments(app, help, arguments.sensor == SensorKind::kRgbd,
+                     arguments.sensor == SensorKind::kStereo, arguments);
+  AddCommonArguments(app, arguments);
+}
+
+void AddAnyRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments) {
+  app.add_option("SEQUENCE", arguments.sequence, help.sequence)->required();
+  AddSensorArguments(app, help, true, true, arguments);
+  AddCommonArguments(app, arguments);
+}
+
+void CheckSensorOptions(const RunArguments& arguments) {
+  const auto refuse = [&](const char* option, const std::filesystem::path& given,
+                          SensorKind expected) {
+    if (!given.empty() && arguments.sensor != expected) {
+      throw InputError(fmt::format("{} is given, but the run is {}, expected {}", option,
+                                   ToString(arguments.sensor), ToString(expected)));
+    }
+  };
+  refuse("--associations", arguments.associations, SensorKind::kRgbd);
+  refuse("--masks-right", arguments.masks_right, SensorKind::kStereo);
+  refuse("--mask-all-right", arguments.mask_all_right, SensorKind::kStereo);
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

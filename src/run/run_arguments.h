@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/datasets/dataset.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/sequences/image_sequence.h"
 
@@ -52,21 +53,16 @@ struct RunArguments {
   uint64_t seed = 0;
 };
 
-// The parts of the help that depend on the data set of a program.
-struct DatasetHelp {
-  std::string sequence;  // describes SEQUENCE
-  std::string settings;  // the default of --settings
-  // The lines of the file of --associations, and its default; empty for monocular programs.
-  std::string associations = {};
-  // The default of --groundtruth.
-  std::string groundtruth = "default: groundtruth.txt in SEQUENCE";
-};
-
 // Adds the options and the positional arguments: SEQUENCE, or ORB-SLAM2's VOCABULARY SETTINGS
 // SEQUENCE ASSOCIATIONS (without ASSOCIATIONS if RunArguments::sensor is monocular). `arguments`
 // and `positional` must outlive the app. Call FinishArguments after parsing.
 void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
                      std::vector<std::string>& positional);
+// The same for a program that reads every data set, with SEQUENCE alone: it has the options of all
+// sensors. Call CheckSensorOptions when the sensor is known.
+void AddAnyRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments);
+// Throws InputError for options that RunArguments::sensor does not have.
+void CheckSensorOptions(const RunArguments& arguments);
 // Copies the positional arguments to the fields that they stand for. Throws InputError unless there
 // are 1 or 4 of them (1 or 3 for monocular programs).
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments);

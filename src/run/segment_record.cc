@@ -17,6 +17,7 @@
 #include "files/staging_folder.h"
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/util/error.h"
+#include "sequences/frame_colour.h"
 #include "util/printable.h"
 
 namespace hullslam {
@@ -86,7 +87,7 @@ Json MakeRecord(const SegmentSource& source, const Json& former) {
   return {{"input", AsText(CanonicalPath(source.input))},
           {"bytes", is_file ? Json(fs::file_size(source.input, error)) : Json()},
           {"frame", KnownFrame(source, former)},
-          {"side_by_side", source.images.has_two_halves},
+          {"side_by_side", source.choices.contains("side_by_side")},
           {"choices", source.sequence.choices},  // such as the topic of a recording
           {"network", AsText(source.network.filename())},
           {"network_hash", source.segmenter.network_hash()},

@@ -3,16 +3,16 @@
 
 #include <filesystem>
 
+#include "hullslam/datasets/dataset.h"
 #include "hullslam/segmentation/segmenter.h"
 #include "hullslam/sequences/image_sequence.h"
-#include "sequences/open_images.h"
 
 namespace hullslam {
 
 // What the masks of a folder are made of.
 struct SegmentSource {
   const std::filesystem::path& input;
-  const OpenImagesOptions& images;
+  const DatasetChoices& choices;
   const ImageSequence& sequence;  // of the input
   const std::filesystem::path& network;
   const SegmenterOptions& options;

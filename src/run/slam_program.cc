@@ -2,61 +2,97 @@
 #include "run/slam_program.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "run/command_line.h"
-#include "run/datasets/given_groundtruth.h"
+#include "run/dataset_arguments.h"
+#include "run/given_groundtruth.h"
 #include "run/input_warnings.h"
 #include "run/live_output.h"
+#include "run/messages.h"
 #include "run/program.h"
 #include "run/slam_run.h"
-#include "sequences/resized_images.h"
+#include "run/tools/commands.h"
 
 namespace hullslam {
 namespace {
 
-int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
-  CLI::App app(program.description, program.name);
-  RunArguments arguments;
-  arguments.sensor = program.sensor;
-  arguments.program = program.name;
-  std::vector<std::string> positional;
-  AddRunArguments(app, dataset.Help(program.sensor), arguments, positional);
-  dataset.AddOptions(app);
+// Parses the command line, in which --view may have no value. Returns false as ParseCommandLine()
+// does.
+bool Parse(CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words = CompleteViewOption(argc, argv);
   std::vector<char*> pointers;
   for (std::string& word : words) {
     pointers.push_back(word.data());
   }
-  if (!ParseCommandLine(app, argc, pointers.data())) {
+  return ParseCommandLine(app, argc, pointers.data());
+}
+
+int RunOnDataset(const Dataset& dataset, const RunArguments& arguments,
+                 const DatasetChoices& choices) {
+  OpenedDataset opened = OpenDatasetLoudly(dataset, {.path = arguments.sequence,
+                                                     .sensor = arguments.sensor,
+                                                     .settings = arguments.settings,
+                                                     .preset = arguments.preset,
+                                                     .overrides = arguments.overrides,
+                                                     .associations = arguments.associations,
+                                                     .groundtruth = arguments.groundtruth,
+                                                     .selection = arguments.selection,
+                                                     .choices = choices});
+  if (arguments.groundtruth == "none" ||
+      (!arguments.groundtruth.empty() && !dataset.reads_groundtruth)) {
+    UseGivenGroundtruth(arguments.groundtruth, dataset.expected_stamps, opened.sequence);
+  }
+  PrintWarnings(opened.sequence);
+  return RunSlam(arguments, std::move(opened.settings), opened.sequence, opened.notes);
+}
+
+int Run(const SlamProgram& program, int argc, char** argv) {
+  const Dataset& dataset = DatasetOfProgram(program.dataset, program.sensor);
+  RunArguments arguments;
+  arguments.sensor = program.sensor;
+  arguments.program = ProgramOf(dataset, program.sensor);
+  CLI::App app(program.description, arguments.program);
+  std::vector<std::string> positional;
+  DatasetChoices choices;
+  AddRunArguments(app, dataset.help(program.sensor), arguments, positional);
+  AddDatasetOptions(app, dataset.options, choices);
+  if (!Parse(app, argc, argv)) {
     return kDone;
   }
   FinishArguments(positional, arguments);
-  DatasetInput input = dataset.Open(arguments);
-  input.settings.options.sensor = program.sensor;
-  if (arguments.groundtruth == "none" ||
-      (!arguments.groundtruth.empty() && !dataset.ReadsGroundtruth())) {
-    UseGivenGroundtruth(arguments.groundtruth, dataset.ExpectedStamps(), input.sequence);
-  }
-  if (input.settings.read_width > 0) {
-    ResizeImages(input.settings.read_width, input.settings.read_height,
-                 input.settings.options.camera, input.sequence);
-    if (!arguments.quiet) {
-      input.notes.push_back("images are resized from " + input.sequence.choices["resized_from"]);
-    }
-  }
-  PrintWarnings(input.sequence);
-  return RunSlam(arguments, std::move(input.settings), input.sequence, input.notes);
+  return RunOnDataset(dataset, arguments, choices);
 }
 
 }  // namespace
 
-int RunSlamProgram(const SlamProgram& program, std::unique_ptr<Dataset> dataset, int argc,
-                   char** argv) {
-  return RunMain([&](int count, char** words) { return Run(program, *dataset, count, words); },
-                 argc, argv);
+int RunSlamProgram(const SlamProgram& program, int argc, char** argv) {
+  return RunMain([&](int count, char** words) { return Run(program, count, words); }, argc, argv);
+}
+
+int RunRun(int argc, char** argv) {
+  CLI::App app("Runs SLAM on a sequence of any kind, which is found by its files.", argv[0]);
+  RunArguments arguments;
+  AnyDatasetArguments any;
+  AddAnyRunArguments(app, HelpOfAnyDataset(), arguments);
+  AddAnyDatasetOptions(app, any);
+  if (!Parse(app, argc, argv)) {
+    return kDone;
+  }
+  if (!any.sensor && !arguments.associations.empty()) {
+    any.sensor = SensorKind::kRgbd;
+  }
+  const FoundDataset found = FindGivenDataset(arguments.sequence, any);
+  arguments.sensor = found.sensor;
+  arguments.program = ProgramOf(*found.dataset, found.sensor);
+  CheckSensorOptions(arguments);
+  if (!arguments.quiet) {
+    Print("{}\n", found.note);
+  }
+  return RunOnDataset(*found.dataset, arguments, any.choices);
 }
 
 }  // namespace hullslam

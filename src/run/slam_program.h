@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "run/datasets/dataset.h"
+#include "hullslam/frame/sensor.h"
 
 namespace hullslam {
 
 struct SlamProgram {
-  std::string name;         // "rgbd_tum"
-  std::string description;  // for --help
   SensorKind sensor = SensorKind::kRgbd;
+  std::string dataset;      // Dataset::program, such as "tum"
+  std::string description;  // for --help
 };
 
-// A whole program: parses the command line, opens the sequence, runs SLAM and prints errors.
-// Returns the exit code.
-int RunSlamProgram(const SlamProgram& program, std::unique_ptr<Dataset> dataset, int argc,
-                   char** argv);
+// A whole program, whose name is that of the sensor and of the data set, such as rgbd_tum: parses
+// the command line, opens the sequence, runs SLAM and prints errors. Returns the exit code.
+int RunSlamProgram(const SlamProgram& program, int argc, char** argv);
 
 }  // namespace hullslam

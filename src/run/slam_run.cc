@@ -15,9 +15,9 @@
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
 #include "results/output_folder.h"
-#include "run/datasets/given_groundtruth.h"
 #include "run/finish_slam.h"
 #include "run/frame_source.h"
+#include "run/given_groundtruth.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/late_masks.h"
@@ -111,9 +111,7 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
 SequenceMasks OpenRunMasks(const RunArguments& arguments, const ImageSequence& sequence,
                            const PinholeCamera& camera) {
   if (arguments.segment.empty()) {
-    MaskRequest request = {arguments.masks, arguments.masks_format,
-                           sequence.read_width > 0 ? sequence.read_width : camera.width,
-                           sequence.read_height > 0 ? sequence.read_height : camera.height};
+    MaskRequest request = RequestOf(arguments.masks, arguments.masks_format, sequence, camera);
     SequenceMasks masks(request, MaskFrames(sequence));
     if (!arguments.masks_right.empty()) {
       request.path = arguments.masks_right;
@@ -140,6 +138,23 @@ std::unique_ptr<LateMasks> MakeLateMasks(const RunArguments& arguments, const Se
       system);
 }
 
+// Prints the warnings of a system, each once.
+class SystemWarnings {
+ public:
+  void Print(const System& system, Progress& progress) {
+    const std::vector<std::string> warnings = system.warnings();
+    if (printed_ < warnings.size()) {
+      progress.Clear();
+    }
+    for (; printed_ < warnings.size(); ++printed_) {
+      PrintError("warning: {}\n", warnings[printed_]);
+    }
+  }
+
+ private:
+  size_t printed_ = 0;
+};
+
 // A run while its frames are tracked.
 struct TrackedRun {
   const RunArguments& arguments;
@@ -157,6 +172,7 @@ void TrackFrames(const TrackedRun& run, LateMasks* late_masks,
                  Progress& progress, RunResult& result) {
   FrameSource frames(run.arguments.realtime ? Pace::kRealtime : Pace::kFast, run.sequence,
                      run.camera, run.masks, run.system, run.live.IsOn());
+  SystemWarnings warnings;
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited =
@@ -182,6 +198,7 @@ void TrackFrames(const TrackedRun& run, LateMasks* late_masks,
     if (late_masks != nullptr && !loaded->has_unknown_masks) {
       late_masks->AfterFrame(frame, loaded->colour);
     }
+    warnings.Print(run.system, progress);
     run.live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), run.system);
     progress.Show(result.given, [&] { return DescribeState(frame.state, shown, run.system); });
   }
@@ -246,9 +263,7 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
 }
 
 void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
-                 const ImageSequence& sequence, const ImageInput& first,
-                 const SequenceMasks& masks) {
-  WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
+                 const ImageSequence& sequence, const SequenceMasks& masks) {
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
@@ -268,8 +283,8 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   for (const std::string& note : notes) {
     Print("{}\n", note);
   }
-  if (!settings.camera_note.empty()) {
-    Print("camera: {}\n", settings.camera_note);
+  if (!settings.notes.camera_note.empty()) {
+    Print("camera: {}\n", settings.notes.camera_note);
   }
   if (settings.preset) {
     Print("{}\n", DescribePreset(settings));
@@ -307,13 +322,6 @@ void ReadMasksOfAll(const RunArguments& arguments, const ImageSequence& sequence
   read(arguments.mask_all_right, ImageSide::kRight, options.mask_all_right);
 }
 
-// The width of a pixel of the depth image in pixels of the colour image; 0 without depth. A depth
-// may be taken from half of its pixel beside the keypoint, and the disparity of a depth camera is
-// known to a part of a pixel of its own.
-double DepthPixel(const ImageInput& image) {
-  return image.depth.empty() ? 0.0 : static_cast<double>(image.grey.cols) / image.depth.cols;
-}
-
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -323,15 +331,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
-  const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
-  if (const double ratio = DepthPixel(first); ratio > 1.0) {
-    options.depth.error.disparity_sigma *= ratio;
-    PrintError(
-        "the depth images of {}x{} px are fitted to the images of {}x{} px; "
-        "depth.disparity_sigma becomes {:g}\n",
-        first.depth.cols, first.depth.rows, first.grey.cols, first.grey.rows,
-        options.depth.error.disparity_sigma);
-  }
+  sequence.load(sequence.frames.front(), options.camera);
   ReadMasksOfAll(arguments, sequence, options);
   const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
   const SequenceMasks masks = OpenRunMasks(arguments, sequence, options.camera);
@@ -342,7 +342,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   LiveOutput live(arguments, options, sequence, groundtruth);
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
-  WarnOfInput(arguments, options, sequence, first, masks);
+  WarnOfInput(arguments, options, sequence, masks);
   PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll({.arguments = arguments,
@@ -351,6 +351,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
                                      .masks = masks,
                                      .system = system,
                                      .live = live});
+  options.depth = system.options().depth;
   if (result.input_failure && system.frames().empty()) {
     throw InputError(*result.input_failure);
   }

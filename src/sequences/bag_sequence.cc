@@ -347,6 +347,29 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
   return sequence;
 }
 
+std::vector<SensorKind> FindBagSensors(const fs::path& path) {
+  const BagIndex index = IndexBags(path, OpenBags(path));
+  const auto is_found = [](const auto& choose) {
+    try {
+      choose();
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  std::vector<SensorKind> sensors;
+  if (is_found([&] { ChooseImageTopic(index, BagImageKind::kColour, {}, kImageOption); })) {
+    sensors.push_back(SensorKind::kMonocular);
+    if (is_found([&] { ChooseImageTopic(index, BagImageKind::kDepth, {}, kDepthOption); })) {
+      sensors.push_back(SensorKind::kRgbd);
+    }
+  }
+  if (is_found([&] { ChoosePairTopics(index, {}, {}, kImageOption, kRightOption); })) {
+    sensors.push_back(SensorKind::kStereo);
+  }
+  return sensors;
+}
+
 BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
                       std::shared_ptr<const StereoRectifier> rectifier) {
   std::vector<std::unique_ptr<Bag>> bags = OpenBags(path);

@@ -18,10 +18,14 @@ const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp) {
                                                                                  : nullptr;
 }
 
+cv::Mat ReadFrameColour(const ImageSequence& sequence, const FramePaths& frame) {
+  return sequence.load_colour != nullptr ? sequence.load_colour(frame)
+                                         : ReadColourImage(frame.image);
+}
+
 cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
                    const PinholeCamera& camera) {
-  cv::Mat image =
-      sequence.load_colour != nullptr ? sequence.load_colour(frame) : ReadColourImage(frame.image);
+  cv::Mat image = ReadFrameColour(sequence, frame);
   CheckImageSize(frame.image.string(), image, camera);
   return image;
 }

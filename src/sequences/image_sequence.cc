@@ -50,15 +50,15 @@ Trajectory AsRead(const ImageSequence& sequence, Trajectory poses) {
                                 : std::move(poses);
 }
 
+Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses) {
+  return sequence.cam_from_read ? OfOtherCamera(std::move(poses), Inverse(*sequence.cam_from_read))
+                                : std::move(poses);
+}
+
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
                                           std::vector<std::string>* notes) {
-  const auto of_loaded = [&sequence](Trajectory as_read) {
-    return sequence.cam_from_read
-               ? OfOtherCamera(std::move(as_read), Inverse(*sequence.cam_from_read))
-               : std::move(as_read);
-  };
   if (sequence.converted_groundtruth) {
-    return of_loaded(*sequence.converted_groundtruth);
+    return AsLoaded(sequence, *sequence.converted_groundtruth);
   }
   if (!sequence.groundtruth) {
     return std::nullopt;
@@ -70,7 +70,7 @@ std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
   if (notes != nullptr) {
     notes->insert(notes->end(), file.notes.begin(), file.notes.end());
   }
-  return of_loaded(std::move(file.poses));
+  return AsLoaded(sequence, std::move(file.poses));
 }
 
 }  // namespace hullslam

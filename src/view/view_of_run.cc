@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/run_sequence.h"
 #include "hullslam/util/error.h"
 #include "map/located_landmarks.h"
 #include "results/finished_run.h"
-#include "sequences/run_sequence.h"
 #include "view/aligned_truth.h"
 #include "view/point_colours.h"
 #include "view/run_pictures.h"

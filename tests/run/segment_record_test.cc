@@ -35,11 +35,11 @@ class SegmentRecordTest : public testing::Test {
 
   void Prepare(const fs::path& input, const fs::path& network,
                const SegmenterOptions& options = {}) const {
-    const OpenImagesOptions images;
-    const ImageSequence sequence = OpenImages(input, images);
+    const DatasetChoices choices;
+    const ImageSequence sequence = OpenImages(input, choices);
     const Segmenter segmenter(network, options);
     PrepareMaskFolder(output_, {.input = input,
-                                .images = images,
+                                .choices = choices,
                                 .sequence = sequence,
                                 .network = network,
                                 .options = options,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/frame/sensor.h"
 #include "hullslam/frame/stereo_rectifier.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
@@ -52,6 +53,10 @@ struct BagSequence {
 // back by more than a second.
 BagSequence OpenBagSequence(const std::filesystem::path& path,
                             const BagSequenceOptions& options = {});
+
+// The sensors for which the recording has topics, found as the functions here find them. Reads the
+// file once. Throws InputError as OpenBagSequence() does for a file that cannot be read.
+std::vector<SensorKind> FindBagSensors(const std::filesystem::path& path);
 
 struct BagPairs {
   ImageSequence images;

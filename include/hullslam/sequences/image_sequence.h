@@ -84,6 +84,8 @@ struct ImageSequence {
 
 // Poses of the camera of the images that the sequence gives, as those of the camera as read.
 Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);
+// The inverse of AsRead().
+Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses);
 
 // The true trajectory of the camera of the images that the sequence gives, from the field that is
 // set, which is that of the camera as read; absent without ground truth. The file may have

@@ -14,13 +14,12 @@
 #include <system_error>
 #include <vector>
 
-#include "camera/fit_depth.h"
 #include "frame/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
-#include "hullslam/sequences/tum_sequence.h"
 #include "masks/mask_overlay.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
+#include "run/dataset_arguments.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/load_settings.h"
@@ -29,6 +28,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
+#include "run/tools/view_images.h"
 #include "sequences/image_file.h"
 
 namespace hullslam {
@@ -43,7 +43,8 @@ struct CheckMasksArguments {
   fs::path masks;
   std::string format;
   fs::path settings;
-  TumSequenceOptions tum;
+  fs::path associations;
+  AnyDatasetArguments any;
   std::string preset;
   std::vector<std::string> overrides;
   fs::path output;  // empty: no pictures
@@ -78,19 +79,20 @@ struct MaskStatistics {
 };
 
 void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
+  const DatasetHelp help = HelpOfAnyDataset();
   app.add_option("SEQUENCE", arguments.sequence,
-                 "folder with rgb.txt (the images themselves may be missing) and, to use depth, "
-                 "depth.txt with its images")
+                 help.sequence + "; the images in a list of TUM may be missing")
       ->required();
   app.add_option("MASKS", arguments.masks,
                  "masks of the sequence: a folder or a JSON file (docs/masks.md)")
       ->required();
   AddMaskFormat(app, arguments.format, "--format,--masks-format");
-  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
+  AddSettingsArgument(app, help.settings, arguments.settings);
   app.add_option(
-      "--associations", arguments.tum.associations,
+      "--associations", arguments.associations,
       "file with one pair of images per line: stamp rgb stamp depth (default: images are "
       "paired by their stamps, at most 0.02 s apart)");
+  AddAnyDatasetOptions(app, arguments.any);
   AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   app.add_option(
@@ -129,10 +131,8 @@ void CountDetections(const FrameMasks& frame, const DetectionResult& result,
 }
 
 // The image. If its file is missing, a grey area of the size of the camera's images.
-cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
-  std::error_code error;
-  return fs::exists(image, error) ? ReadGreyImage(image)
-                                  : cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96));
+cv::Mat Background(const cv::Mat& grey, const PinholeCamera& camera) {
+  return grey.empty() ? cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96)) : grey;
 }
 
 void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
@@ -142,35 +142,31 @@ void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera
 
 // Counts the masks of one frame and, if `output` is given, draws them. If its masks or images
 // cannot be read, this is recorded as a fault.
-void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& options,
+void CheckFrame(const CheckMasksArguments& arguments, const OpenedDataset& opened,
                 const MaskSource& source, const FramePaths& paths, const MaskFrame& names,
                 OutputFolder* output, MaskStatistics& counts) {
+  const SystemOptions& options = opened.settings.options;
+  const PinholeCamera& camera = options.camera;
   const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
   ++counts.frames;
-  std::error_code error;
-  counts.without_image += fs::exists(paths.image, error) ? 0 : 1;
+  counts.without_image += HasImage(opened.sequence, paths) ? 0 : 1;
   counts.without_depth += paths.depth.empty() ? 1 : 0;
   try {
-    const FrameMasks frame = source.Read(names);
-    CheckMasks(source, {&names, 1},
-               {.path = arguments.masks,
-                .format = {},
-                .width = options.camera.width,
-                .height = options.camera.height});
+    FrameMasks frame = source.Read(names);
+    CheckMasks(source, {&names, 1}, RequestOf(arguments.masks, {}, opened.sequence, camera));
+    FitMasks(opened.sequence, frame.masks);
     counts.missing += frame.is_missing ? 1 : 0;
     counts.without_masks += frame.masks.empty() ? 1 : 0;
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
     counts.without_area += frame.without_area;
     counts.crowds += frame.crowds;
-    const cv::Mat depth = FitDepth(paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth),
-                                   {options.camera.width, options.camera.height});
-    const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
+    const ViewImages view = ReadView(opened.sequence, paths, camera, is_drawn);
+    const DetectionBuilder builder(camera, options.depth.units_per_metre,
                                    options.objects.detection);
-    const DetectionResult result = builder.Build(frame.masks, depth, {});
+    const DetectionResult result = builder.Build(frame.masks, view.depth, {});
     CountDetections(frame, result, counts);
     if (is_drawn) {
-      DrawFrame(names.stem + ".png", Background(paths.image, options.camera), options.camera, frame,
-                result, *output);
+      DrawFrame(names.stem + ".png", Background(view.grey, camera), camera, frame, result, *output);
       ++counts.pictures;
     }
   } catch (const InputError& error) {
@@ -233,7 +229,7 @@ std::unique_ptr<OutputFolder> OpenOutput(const CheckMasksArguments& arguments) {
     return nullptr;
   }
   const std::vector<fs::path> inputs = {arguments.sequence, arguments.masks, arguments.settings,
-                                        arguments.tum.associations};
+                                        arguments.associations};
   return std::make_unique<OutputFolder>(arguments.output, "pictures.json", inputs);
 }
 
@@ -243,6 +239,18 @@ void FinishOutput(OutputFolder& output) {
       {"pictures.json",
        index.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n'});
   output.Commit();
+}
+
+OpenedDataset OpenSequence(const CheckMasksArguments& arguments) {
+  OpenedDataset opened = OpenAnyDataset(arguments.any, {.path = arguments.sequence,
+                                                        .settings = arguments.settings,
+                                                        .preset = arguments.preset,
+                                                        .overrides = arguments.overrides,
+                                                        .associations = arguments.associations,
+                                                        .need_images = false});
+  PrintWarnings(opened.sequence);
+  opened.settings.options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
+  return opened;
 }
 
 }  // namespace
@@ -256,24 +264,20 @@ int RunCheckMasks(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const fs::path settings = ChooseTumSettings(arguments.settings, arguments.sequence).file;
-  SystemOptions options = LoadSettings(settings, arguments.preset, arguments.overrides).options;
-  options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
-  arguments.tum.need_images = false;
-  arguments.tum.frames_per_second = options.frames_per_second;
-  const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
-  PrintWarnings(sequence);
+  const OpenedDataset opened = OpenSequence(arguments);
+  const ImageSequence& sequence = opened.sequence;
+  const PinholeCamera& camera = opened.settings.options.camera;
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
-  const auto source = OpenMasks(
-      {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
+  const auto source =
+      OpenMasks(RequestOf(arguments.masks, arguments.format, sequence, camera), frames);
   CatchInterrupts();
   const auto output = OpenOutput(arguments);
-  WarnOfMisplacedMasks(sequence, options.camera,
+  WarnOfMisplacedMasks(sequence, camera,
                        [&](size_t frame) { return source->Read(frames[frame]).masks; });
   MaskStatistics counts;
   Progress progress(frames.size(), arguments.quiet);
   for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {
-    CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], output.get(), counts);
+    CheckFrame(arguments, opened, *source, sequence.frames[i], frames[i], output.get(), counts);
     progress.Show(i + 1);
   }
   progress.Clear();

@@ -6,6 +6,7 @@
 namespace hullslam {
 namespace {
 
+constexpr const char* kRun = "Run SLAM";
 constexpr const char* kPrepare = "Prepare a sequence or a vocabulary";
 constexpr const char* kMap = "Map objects where the camera's poses are known";
 constexpr const char* kShow = "Look at a finished run or a saved map";
@@ -13,6 +14,7 @@ constexpr const char* kMeasure = "Measure how good the results are";
 constexpr const char* kConvert = "Use the results in other programs";
 
 constexpr std::array kCommands = {
+    Command{kRun, "run", "runs SLAM on a sequence of any kind", RunRun},
     Command{kPrepare, "check-masks", "checks the masks of a sequence, and can draw them",
             RunCheckMasks},
     Command{kPrepare, "segment", "makes masks of images with a network", RunSegment},

@@ -15,6 +15,7 @@ int RunExport(int argc, char** argv);
 int RunMapObjects(int argc, char** argv);
 int RunQueryObjects(int argc, char** argv);
 int RunRelocalise(int argc, char** argv);
+int RunRun(int argc, char** argv);  // in run/slam_program.cc
 int RunSegment(int argc, char** argv);
 int RunTrainVocabulary(int argc, char** argv);
 int RunView(int argc, char** argv);

@@ -79,8 +79,8 @@ bool IsOwnOption(std::string_view word) {
 // Prints the help or the version. Without any argument, the help is an answer to bad usage.
 int RunWithoutCommand(int argc, char** argv) {
   CLI::App app(
-      "The tools of HullSLAM. SLAM itself has a program for each kind of sequence, such "
-      "as rgbd_tum.",
+      "HullSLAM: SLAM and its tools. `run` finds out what kind of sequence it is given; each kind "
+      "also has a program of its own, such as rgbd_tum.",
       "hullslam");
   for (const Command& command : Commands()) {
     app.add_subcommand(command.name, command.meaning)->group(command.wish);

@@ -12,7 +12,6 @@
 #include "eval/object_metrics.h"
 #include "files/plausible.h"
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/known_pose_mapper.h"
 #include "hullslam/util/error.h"
@@ -20,7 +19,8 @@
 #include "results/object_file.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
-#include "run/datasets/given_groundtruth.h"
+#include "run/dataset_arguments.h"
+#include "run/given_groundtruth.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/load_settings.h"
@@ -32,8 +32,8 @@
 #include "run/report_output.h"
 #include "run/summarize_run.h"
 #include "run/tools/commands.h"
+#include "run/tools/view_images.h"
 #include "scene/make_scene.h"
-#include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
 #include "system/frame_chooser.h"
 
@@ -50,6 +50,7 @@ struct MapObjectsArguments {
   std::filesystem::path masks;
   std::string masks_format;
   std::filesystem::path settings;
+  AnyDatasetArguments any;
   std::string preset;
   std::vector<std::string> overrides;
   std::filesystem::path output =
@@ -62,15 +63,15 @@ struct MapObjectsArguments {
 };
 
 void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
-  app.add_option(
-         "SEQUENCE", arguments.sequence,
-         "folder with rgb.txt (the images themselves may be missing) and, to use depth, depth.txt "
-         "with its images")
+  const DatasetHelp help = HelpOfAnyDataset();
+  app.add_option("SEQUENCE", arguments.sequence,
+                 help.sequence + "; the images in a list of TUM may be missing")
       ->required();
   app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM format")->required();
+  AddAnyDatasetOptions(app, arguments.any);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.get_option("--masks")->required();
-  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
+  AddSettingsArgument(app, help.settings, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);
@@ -144,57 +145,61 @@ void PrintTable(const KnownPoseMapper& run, const ObjectResults& report) {
 }
 
 struct MappingInputs {
-  SettingsChoice settings;
-  LoadedSettings loaded;
-  ImageSequence sequence;
+  OpenedDataset opened;
   Trajectory poses;
   std::optional<Trajectory> groundtruth;  // tells only which direction is upwards
 };
 
 MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   MappingInputs inputs;
-  inputs.settings = ChooseTumSettings(arguments.settings, arguments.sequence);
-  inputs.loaded = LoadSettings(inputs.settings.file, arguments.preset, arguments.overrides);
-  if (!inputs.loaded.options.objects.enabled) {
+  inputs.opened = OpenAnyDataset(arguments.any, {.path = arguments.sequence,
+                                                 .settings = arguments.settings,
+                                                 .preset = arguments.preset,
+                                                 .overrides = arguments.overrides,
+                                                 .need_images = false});
+  SystemOptions& options = inputs.opened.settings.options;
+  options.sensor = SensorKind::kRgbd;  // the poses are in metres, also without depth
+  if (!options.objects.enabled) {
     throw InputError(fmt::format(
         "objects.enabled is false{}, expected true, because map_objects does nothing else than map "
         "objects",
         arguments.preset.empty() ? "" : " (--preset " + arguments.preset + ")"));
   }
-  inputs.sequence = OpenTumSequence(
-      arguments.sequence,
-      {.need_images = false, .frames_per_second = inputs.loaded.options.frames_per_second});
-  inputs.poses = ReadTrajectory(arguments.poses);
-  PrintWarnings(inputs.sequence);
-  inputs.groundtruth = FindGroundtruth(inputs.sequence);
+  const ImageSequence& sequence = inputs.opened.sequence;
+  inputs.poses = AsLoaded(sequence, ReadTrajectory(arguments.poses));
+  PrintWarnings(sequence);
+  inputs.groundtruth = FindGroundtruth(sequence);
   return inputs;
 }
 
 void PrintInputs(const MappingInputs& inputs, const SequenceMasks& masks) {
-  Print("{}\n", Describe(inputs.settings));
-  if (inputs.loaded.preset) {
-    Print("{}\n", DescribePreset(inputs.loaded));
+  for (const std::string& note : inputs.opened.notes) {
+    Print("{}\n", note);
+  }
+  if (inputs.opened.settings.preset) {
+    Print("{}\n", DescribePreset(inputs.opened.settings));
   }
   Print("{}\n", masks.Describe());
 }
 
 // Adds the views to the mapper. Returns false if a signal ended it early. Throws InputError for a
 // view that cannot be used; the views before it have been added.
-bool MapViews(const MapObjectsArguments& arguments, const SystemOptions& options,
-              const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
-              const SequenceMasks& masks, Progress& progress, KnownPoseMapper& run) {
-  bool is_depth_checked = false;
+bool MapViews(const MapObjectsArguments& arguments, const OpenedDataset& opened,
+              const std::vector<ChosenFrame>& views, const SequenceMasks& masks, Progress& progress,
+              KnownPoseMapper& run) {
+  const ImageSequence& sequence = opened.sequence;
+  const SystemOptions& options = opened.settings.options;
   for (const ChosenFrame& view : views) {
     if (IsInterrupted()) {
       return false;
     }
-    const FramePaths& frame = frames[view.frame];
+    const FramePaths& frame = sequence.frames[view.frame];
     const bool has_depth = !arguments.without_depth && !frame.depth.empty();
-    const cv::Mat depth = has_depth ? ReadDepthImage(frame.depth) : cv::Mat();
-    if (has_depth && !std::exchange(is_depth_checked, true)) {
-      WarnOfImplausibleDepth(frame.depth, depth, options.depth);
-    }
-    run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame), depth);
+    const cv::Mat depth =
+        has_depth ? ReadView(sequence, frame, options.camera, false).depth : cv::Mat();
+    std::vector<InstanceMask> found = masks.Read(view.frame);
+    FitMasks(sequence, found);
+    run.AddView(frame.timestamp, view.world_from_cam, std::move(found), depth);
     progress.Show(view.frame + 1);
   }
   return true;
@@ -206,13 +211,13 @@ struct MappingEnd {
   std::optional<std::string> input_failure = {};  // what was wrong with a view
 };
 
-MappingEnd MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
-                  const std::vector<FramePaths>& frames, const std::vector<ChosenFrame>& views,
-                  const SequenceMasks& masks, KnownPoseMapper& run) {
-  Progress progress(frames.size(), arguments.quiet);
+MappingEnd MapAll(const MapObjectsArguments& arguments, const OpenedDataset& opened,
+                  const std::vector<ChosenFrame>& views, const SequenceMasks& masks,
+                  KnownPoseMapper& run) {
+  Progress progress(opened.sequence.frames.size(), arguments.quiet);
   MappingEnd end;
   try {
-    end.was_interrupted = !MapViews(arguments, options, frames, views, masks, progress, run);
+    end.was_interrupted = !MapViews(arguments, opened, views, masks, progress, run);
   } catch (const InputError& error) {
     if (run.map().keyframes().empty()) {
       progress.Clear();
@@ -227,8 +232,8 @@ MappingEnd MapAll(const MapObjectsArguments& arguments, const SystemOptions& opt
 RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& inputs,
                      const SequenceMasks& masks, const KnownPoseMapper& run, size_t without_pose) {
   RunSummary summary;
-  summary.trajectory.frames = inputs.sequence.frames.size();
-  summary.trajectory.tracked = inputs.sequence.frames.size() - without_pose;
+  summary.trajectory.frames = inputs.opened.sequence.frames.size();
+  summary.trajectory.tracked = inputs.opened.sequence.frames.size() - without_pose;
   summary.trajectory.lost = without_pose;
   summary.trajectory.coverage = static_cast<double>(summary.trajectory.tracked) /
                                 static_cast<double>(summary.trajectory.frames);
@@ -237,22 +242,23 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.map.keyframes = run.map().keyframes().size();
   summary.provenance.program = kProgram;
   summary.provenance.version = HULLSLAM_VERSION;
-  summary.provenance.settings_hash = HashSettings(inputs.loaded.options);
-  AddPreset(inputs.loaded, summary.provenance);
+  summary.provenance.settings_hash = HashSettings(inputs.opened.settings.options);
+  AddPreset(inputs.opened.settings, summary.provenance);
   summary.provenance.pipeline = "objects";
   summary.provenance.masks_format = masks.format();
   summary.provenance.sequence = arguments.sequence.string();
-  summary.provenance.dataset = inputs.sequence.dataset;
+  summary.provenance.dataset = inputs.opened.sequence.dataset;
+  summary.provenance.sequence_choices = inputs.opened.sequence.choices;
   return summary;
 }
 
-void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const ObjectResults& report,
-                  const Scene& scene, RunSummary summary) {
+void WriteOutputs(OutputFolder& output, const ImageSequence& sequence, const KnownPoseMapper& run,
+                  const ObjectResults& report, const Scene& scene, RunSummary summary) {
   for (const FileContent& file : ObjectFiles(report, scene)) {
     output.Write(file);
   }
   // Written because `evaluate` and plot_run.py expect a trajectory in the folder of every run.
-  const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
+  const std::string poses = FormatTrajectory(AsRead(sequence, KeyframeTrajectory(run.map())));
   output.Write({"trajectory.txt", poses});
   output.Write({"keyframes.txt", poses});
   summary.files = output.names();
@@ -287,23 +293,27 @@ int RunMapObjects(int argc, char** argv) {
     return kDone;
   }
   const MappingInputs inputs = OpenMappingInputs(arguments);
-  const SystemOptions& options = inputs.loaded.options;
+  const SystemOptions& options = inputs.opened.settings.options;
   const PinholeCamera& camera = options.camera;
-  const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
-                            MaskFrames(inputs.sequence));
-  const auto& frames = inputs.sequence.frames;
+  const ImageSequence& sequence = inputs.opened.sequence;
+  const SequenceMasks masks(RequestOf(arguments.masks, arguments.masks_format, sequence, camera),
+                            MaskFrames(sequence));
+  const auto& frames = sequence.frames;
   const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {kProgram, arguments.overwrite});
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
-  WarnOfMisplacedMasks(inputs.sequence, camera, [&](size_t frame) { return masks.Read(frame); });
+  WarnOfMisplacedMasks(sequence, camera, [&](size_t frame) { return masks.Read(frame); });
   if (!arguments.quiet) {
     PrintInputs(inputs, masks);
   }
   const auto start = std::chrono::steady_clock::now();
   KnownPoseMapper run(options);
-  const MappingEnd end = MapAll(arguments, options, frames, views, masks, run);
+  const MappingEnd end = MapAll(arguments, inputs.opened, views, masks, run);
+  for (const std::string& warning : run.warnings()) {
+    PrintError("warning: {}\n", warning);
+  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectResults report = MeasuredObjects(run.map(), camera, arguments.sequence);
@@ -316,16 +326,16 @@ int RunMapObjects(int argc, char** argv) {
   summary.provenance.interrupted = end.was_interrupted;
   summary.provenance.input_failure = end.input_failure;
   const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
-  WriteOutputs(output, run, report, scene, summary);
+  WriteOutputs(output, sequence, run, report, scene, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);
     Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
           summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
           DescribeObjects(*summary.objects, "m"), arguments.output.string());
   }
-  const std::string unreported = arguments.report ? WriteReport(output.path(), run.map(), options,
-                                                                inputs.sequence, arguments.quiet)
-                                                  : "";
+  const std::string unreported =
+      arguments.report ? WriteReport(output.path(), run.map(), options, sequence, arguments.quiet)
+                       : "";
   const int code = FailIfAny({DescribeEnd(summary, views.size()), unreported});
   return end.input_failure ? kBadInput : code;
 }

@@ -17,12 +17,13 @@
 #include "hullslam/eval/ate.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/image_sequence.h"
-#include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/relocaliser.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/dataset_arguments.h"
+#include "run/given_groundtruth.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/load_settings.h"
@@ -31,6 +32,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
+#include "run/tools/view_images.h"
 #include "run/vocabularies.h"
 #include "util/median.h"
 
@@ -47,6 +49,8 @@ struct RelocaliseArguments {
   std::string masks_format;
   std::filesystem::path vocabulary;
   std::filesystem::path settings;
+  std::filesystem::path groundtruth;  // empty: that of the sequence
+  AnyDatasetArguments any;
   std::string preset;
   std::vector<std::string> overrides;
   std::vector<std::string> query_overrides;
@@ -59,12 +63,15 @@ struct RelocaliseArguments {
 };
 
 void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
-  app.add_option("SEQUENCE", arguments.sequence,
-                 "folder with rgb.txt, depth.txt and groundtruth.txt")
-      ->required();
+  const DatasetHelp help = HelpOfAnyDataset();
+  app.add_option("SEQUENCE", arguments.sequence, help.sequence)->required();
+  app.add_option("--groundtruth", arguments.groundtruth,
+                 "true trajectory (" + help.groundtruth + ")")
+      ->type_name("FILE");
+  AddAnyDatasetOptions(app, arguments.any);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddVocabularyArgument(app, arguments.vocabulary);
-  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
+  AddSettingsArgument(app, help.settings, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   AddOverrides(app, "--query-set",
@@ -126,34 +133,35 @@ FrameRange ParseRange(const std::string& option, const std::string& text, size_t
   return range;
 }
 
-// Like LoadSettings(), but prints no warnings.
-SystemOptions ReadQuietly(const std::filesystem::path& file, const std::string& preset,
-                          const std::vector<std::string>& overrides) {
-  const std::optional<Preset> read =
-      preset.empty() ? std::nullopt : std::optional(ReadPreset(preset));
-  SettingsNotes unused;
-  return ReadSettings(file, {.preset = read ? &*read : nullptr, .overrides = overrides}, unused);
-}
-
-SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries) {
-  const std::filesystem::path settings =
-      ChooseTumSettings(arguments.settings, arguments.sequence).file;
-  std::vector<std::string> overrides = arguments.overrides;
+// Opens the sequence with the settings of the map or of the queries. Warnings are printed only for
+// the queries: their overrides contain those of the map.
+OpenedDataset OpenInput(const RelocaliseArguments& arguments, const FoundDataset& found,
+                        bool for_queries) {
+  DatasetRequest request{.path = arguments.sequence,
+                         .sensor = found.sensor,
+                         .settings = arguments.settings,
+                         .preset = arguments.preset,
+                         .overrides = arguments.overrides,
+                         .choices = arguments.any.choices};
   if (for_queries) {
-    overrides.insert(overrides.end(), arguments.query_overrides.begin(),
-                     arguments.query_overrides.end());
+    request.overrides.insert(request.overrides.end(), arguments.query_overrides.begin(),
+                             arguments.query_overrides.end());
   }
-  // Warnings are printed only for the queries: their overrides contain those of the map.
-  SystemOptions options = for_queries ? LoadSettings(settings, arguments.preset, overrides).options
-                                      : ReadQuietly(settings, arguments.preset, overrides);
-  options.seed = arguments.seed;
-  return options;
+  OpenedDataset opened = for_queries ? OpenDatasetLoudly(*found.dataset, request)
+                                     : OpenDataset(*found.dataset, request);
+  opened.settings.options.seed = arguments.seed;
+  return opened;
 }
 
-Trajectory NeedGroundtruth(const RelocaliseArguments& arguments, const ImageSequence& sequence) {
+Trajectory NeedGroundtruth(const RelocaliseArguments& arguments, const FoundDataset& found,
+                           ImageSequence& sequence) {
+  if (!arguments.groundtruth.empty()) {
+    UseGivenGroundtruth(arguments.groundtruth, found.dataset->expected_stamps, sequence);
+  }
   std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
   if (!groundtruth) {
-    throw InputError(arguments.sequence.string() + ": has no groundtruth.txt");
+    throw InputError(arguments.sequence.string() +
+                     ": has no ground truth such as groundtruth.txt, expected --groundtruth FILE");
   }
   return std::move(*groundtruth);
 }
@@ -180,7 +188,7 @@ std::vector<size_t> ChooseQueries(const RelocaliseArguments& arguments,
     }
   }
   if (frames.empty()) {
-    throw InputError(fmt::format("{}: no frame of --query-frames {} has a pose in groundtruth.txt",
+    throw InputError(fmt::format("{}: no frame of --query-frames {} has a true pose",
                                  arguments.sequence.string(), arguments.query_frames));
   }
   std::mt19937_64 random(arguments.seed);
@@ -194,18 +202,20 @@ std::vector<size_t> ChooseQueries(const RelocaliseArguments& arguments,
 }
 
 RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
-  ImageSequence sequence = OpenTumSequence(arguments.sequence);
-  Trajectory groundtruth = NeedGroundtruth(arguments, sequence);
-  SystemOptions map_options = LoadOptions(arguments, false);
-  SystemOptions query_options = LoadOptions(arguments, true);
+  const FoundDataset found = FindGivenDataset(arguments.sequence, arguments.any);
+  OpenedDataset opened = OpenInput(arguments, found, false);
+  ImageSequence sequence = std::move(opened.sequence);
+  Trajectory groundtruth = NeedGroundtruth(arguments, found, sequence);
+  SystemOptions map_options = std::move(opened.settings.options);
+  SystemOptions query_options = OpenInput(arguments, found, true).settings.options;
   const FrameRange map_frames =
       ParseRange("--map-frames", arguments.map_frames, sequence.frames.size());
   const FrameRange query_frames =
       ParseRange("--query-frames", arguments.query_frames, sequence.frames.size());
   std::vector<size_t> queries = ChooseQueries(arguments, sequence, groundtruth, query_frames);
-  SequenceMasks masks({arguments.masks, arguments.masks_format, map_options.camera.width,
-                       map_options.camera.height},
-                      MaskFrames(sequence));
+  SequenceMasks masks(
+      RequestOf(arguments.masks, arguments.masks_format, sequence, map_options.camera),
+      MaskFrames(sequence));
   map_options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   query_options.vocabulary = map_options.vocabulary;
   return {std::move(sequence),      std::move(groundtruth), std::move(map_options),
@@ -216,13 +226,14 @@ RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
 ImageInput LoadFrame(const RelocaliseInputs& inputs, const PinholeCamera& camera, size_t frame) {
   ImageInput image = inputs.sequence.load(inputs.sequence.frames[frame], camera);
   image.masks = inputs.masks.Read(frame);
+  FitMasks(inputs.sequence, image.masks);
   return image;
 }
 
 // The map of the first frames, and the transform between its world and that of the ground truth.
 struct MadeMap {
   std::shared_ptr<const Map> map;
-  Rigid3 truth_from_map;
+  PointAlignment truth_from_map;
 };
 
 // Null if the frames cannot be tracked, or after an interrupt; the reason is printed.
@@ -241,7 +252,10 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
     PrintFailure("the program was interrupted");
     return std::nullopt;
   }
-  const AteResult ate = EvaluateAte(inputs.groundtruth, system.trajectory());
+  AteOptions options;
+  options.alignment = inputs.map_options.sensor == SensorKind::kMonocular ? AlignmentKind::kSim3
+                                                                          : AlignmentKind::kSe3;
+  const AteResult ate = EvaluateAte(inputs.groundtruth, system.trajectory(), options);
   if (!ate.ok()) {
     PrintFailure("the map cannot be compared with the ground truth: " + ate.failure);
     return std::nullopt;
@@ -254,7 +268,7 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
   Print("map of frames {} to {}: {} keyframes, {} landmarks, {} objects; ATE RMSE {:.4f} m\n",
         range.first, range.last, map.keyframes().size(), map.landmarks().size(), mapped,
         ate.errors.rmse);
-  return MadeMap{system.map(), ate.reference_from_estimate.target_from_source};
+  return MadeMap{system.map(), ate.reference_from_estimate};
 }
 
 struct QueryResult {
@@ -275,8 +289,8 @@ QueryResult RunQuery(const RelocaliseInputs& inputs, const MadeMap& made,
     const Rigid3 truth =
         InterpolatePose(inputs.groundtruth, inputs.sequence.frames[frame].timestamp, kMaxPoseGap)
             .value();
-    const Rigid3 estimate = made.truth_from_map * Inverse(result.found->cam_from_world);
-    result.error = (estimate.translation - truth.translation).norm();
+    const Eigen::Vector3d position = Inverse(result.found->cam_from_world).translation;
+    result.error = (made.truth_from_map * position - truth.translation).norm();
   }
   return result;
 }
@@ -340,7 +354,7 @@ void PrintResults(const std::vector<QueryResult>& results) {
 int RunRelocalise(int argc, char** argv) {
   CLI::App app(
       "Measures how well single frames are found in a map of other frames of the same sequence.\n"
-      "Their true poses are those of groundtruth.txt, aligned with the trajectory of the map.",
+      "Their true poses are those of the ground truth, aligned with the trajectory of the map.",
       argv[0]);
   RelocaliseArguments arguments;
   AddArguments(app, arguments);

@@ -15,6 +15,7 @@
 #include "hullslam/util/error.h"
 #include "masks/yolo_text.h"
 #include "run/command_line.h"
+#include "run/dataset_arguments.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "run/program.h"
@@ -22,7 +23,7 @@
 #include "run/segment_record.h"
 #include "run/segmenter_arguments.h"
 #include "run/tools/commands.h"
-#include "sequences/open_images.h"
+#include "sequences/frame_colour.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -35,7 +36,7 @@ struct SegmentArguments {
   fs::path network;
   fs::path output;
   SegmenterOptions options;
-  OpenImagesOptions images;
+  DatasetChoices choices;
   size_t every = 1;
   bool quiet = false;
 };
@@ -53,10 +54,7 @@ void AddOptions(CLI::App& app, SegmentArguments& arguments) {
   app.add_option("--every", arguments.every, "only the first frame and every n-th frame after it")
       ->check(WholeNumber(1))
       ->capture_default_str();
-  app.add_flag("--side-by-side", arguments.images.has_two_halves,
-               "each image shows a stereo pair side by side");
-  app.add_option("--image-topic", arguments.images.image_topic,
-                 "topic of the images in a recording (default: found by type and name)");
+  AddDatasetOptions(app, OptionsOfImages(), arguments.choices);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(app, "done", "the program failed or was interrupted");
 }
@@ -166,12 +164,12 @@ int RunSegment(int argc, char** argv) {
     return kDone;
   }
   Segmenter segmenter(arguments.network, arguments.options);
-  const ImageSequence sequence = OpenImages(arguments.input, arguments.images);
+  const ImageSequence sequence = OpenImages(arguments.input, arguments.choices);
   for (const std::string& warning : sequence.warnings) {
     PrintError("warning: {}\n", warning);
   }
   PrepareMaskFolder(arguments.output, {.input = arguments.input,
-                                       .images = arguments.images,
+                                       .choices = arguments.choices,
                                        .sequence = sequence,
                                        .network = arguments.network,
                                        .options = arguments.options,

@@ -10,6 +10,11 @@ BagSequence OpenBagSequence(const std::filesystem::path& path, const BagSequence
   return {};
 }
 
+std::vector<SensorKind> FindBagSensors(const std::filesystem::path& path) {
+  RequireComponent("BAGS", path.string() + " is a recording");
+  return {};
+}
+
 BagPairs OpenBagPairs(const std::filesystem::path& path, const BagSequenceOptions&,
                       std::shared_ptr<const StereoRectifier>) {
   RequireComponent("BAGS", path.string() + " is a recording");

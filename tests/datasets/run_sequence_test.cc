@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sequences/run_sequence.h"
+#include "datasets/run_sequence.h"
 
 #include <gtest/gtest.h>
 
@@ -86,13 +86,27 @@ TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
   EXPECT_EQ(sequence.frames[0].depth, folder.path() / "tum" / "d.png");
 }
 
+TEST(RunSequence, AFolderOfImagesHasTheStampsOfTheRun) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"0.png", "1.png"}) {
+    cv::imwrite((folder.path() / name).string(), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+  }
+  const ImageSequence sequence =
+      OpenRunSequence({.path = {},
+                       .dataset = "video",
+                       .choices = {{"frames_per_second", "4"}, {"stamp_offset", "100.5"}}},
+                      folder.path(), MadeCamera());
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.frames[1].timestamp, 100.75);
+}
+
 TEST(RunSequence, OfAnUnknownDataSetIsRefused) {
   const TemporaryFolder folder;
   ExpectInputError([&] { OpenRunSequence({}, folder.path() / "gone", MadeCamera()); },
                    {"gone", "does not say of which data set", "repeat the run"});
   ExpectInputError(
       [&] { OpenRunSequence({.path = {}, .dataset = "kinect"}, folder.path(), MadeCamera()); },
-      {"'kinect'", "tum, icl, euroc, euroc_stereo, kitti", "bag, bag_stereo, video"});
+      {"'kinect'", "bag, bag_stereo, euroc, euroc_stereo, kitti_left, kitti, icl, tum"});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/datasets/given_groundtruth.h"
+#include "run/given_groundtruth.h"
 
 #include <fmt/format.h>
 

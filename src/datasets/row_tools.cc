@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "datasets/row_tools.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "settings/stereo_settings.h"
+#include "util/shown_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+bool IsThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+bool IsFolderThere(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+std::string TextOf(const DatasetChoices& choices, const std::string& key) {
+  const auto found = choices.find(key);
+  return found != choices.end() ? found->second : std::string();
+}
+
+std::optional<double> NumberOf(const DatasetChoices& choices, const std::string& key,
+                               const char* origin) {
+  const std::string text = TextOf(choices, key);
+  double value = 0.0;
+  if (text.empty()) {
+    return std::nullopt;
+  }
+  if (!ParseFinite(text, value)) {
+    throw InputError(fmt::format("{}{} is '{}', expected a number", key, origin, ShowText(text)));
+  }
+  return value;
+}
+
+std::string DescribeSettings(const fs::path& file, const std::string& reason) {
+  return fmt::format("settings: {} ({})", file.string(), reason);
+}
+
+std::string DescribeGivenSettings(const fs::path& file) {
+  return DescribeSettings(file, "as --settings says");
+}
+
+LoadedSettings SettingsOf(const DatasetRequest& request, const CameraCalibration& calibration) {
+  return request.settings.empty()
+             ? LoadSettings(calibration, request.path.string(), request.preset, request.overrides)
+             : LoadSettings(request.settings, request.preset, request.overrides);
+}
+
+std::shared_ptr<const StereoRectifier> ReadRectifier(const std::string& calibration) {
+  return calibration.empty() ? nullptr
+                             : MakeRectifier(calibration, ReadSettings(calibration).camera);
+}
+
+std::shared_ptr<const StereoRectifier> ReadPairRectifier(const std::string& calibration) {
+  return calibration.empty() ? nullptr
+                             : MakePairRectifier(calibration, ReadSettings(calibration).camera);
+}
+
+std::shared_ptr<const StereoRectifier> RectifierOfSettings(const fs::path& file,
+                                                           const LoadedSettings& settings,
+                                                           bool replaces_calibration) {
+  if (!settings.notes.has_baseline && !HasRightCamera(file)) {
+    throw InputError(file.string() +
+                     ": has no baseline, expected Camera.bf (the baseline times Camera.fx) or the "
+                     "calibration of both cameras");
+  }
+  const PinholeCamera& camera = settings.options.camera;
+  const auto rectifier = MakeRectifier(file, camera);
+  if (rectifier != nullptr && settings.notes.read_width > 0) {
+    throw InputError(file.string() +
+                     ": asks for resized images, which is not possible where both images are "
+                     "rectified, expected neither Camera.newWidth, Camera.newHeight nor "
+                     "Camera.imageScale");
+  }
+  return replaces_calibration && rectifier == nullptr ? MakePairRectifier(file, camera) : rectifier;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "datasets/run_sequence.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "hullslam/datasets/dataset.h"
+#include "hullslam/util/error.h"
+#include "sequences/resized_images.h"
+#include "util/shown_text.h"
+
+namespace hullslam {
+
+ImageSequence OpenRunSequence(const SequenceOfRun& run, const std::filesystem::path& path,
+                              const PinholeCamera& camera, bool use_depth) {
+  std::string known;
+  for (const Dataset& dataset : Datasets()) {
+    if (dataset.sensors.empty()) {
+      continue;
+    }
+    if (run.dataset == dataset.name) {
+      ImageSequence sequence = dataset.open_images({.path = path,
+                                                    .choices = run.choices,
+                                                    .origin = " in summary.json",
+                                                    .camera = camera,
+                                                    .use_depth = use_depth});
+      if (const auto size = run.choices.find("resized_from"); size != run.choices.end()) {
+        ResizeImages(size->second, camera, sequence);
+      }
+      return sequence;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(dataset.name);
+  }
+  throw InputError(
+      run.dataset.empty()
+          ? fmt::format(
+                "{}: cannot be opened, because the run does not say of which data set it is "
+                "(provenance.dataset in summary.json); repeat the run with this version",
+                path.string())
+          : fmt::format("{}: cannot be opened, because provenance.dataset in summary.json is '{}', "
+                        "expected one of: {}",
+                        path.string(), ShowText(run.dataset), known));
+}
+
+}  // namespace hullslam

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/datasets/dataset.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace hullslam {
+
+// Adds the options of a data set, whose values become choices. `choices` must outlive the app.
+void AddDatasetOptions(CLI::App& app, std::span<const DatasetOption> options,
+                       DatasetChoices& choices);
+
+// The arguments of a program that reads every data set.
+struct AnyDatasetArguments {
+  std::optional<SensorKind> sensor = {};  // empty: the one with the most information
+  DatasetChoices choices = {};
+};
+
+// Adds --mono, --rgbd, --stereo and the options of all data sets. `arguments` must outlive the app.
+void AddAnyDatasetOptions(CLI::App& app, AnyDatasetArguments& arguments);
+
+// The options that decide which images of the input are used, and what their names are.
+std::vector<DatasetOption> OptionsOfImages();
+
+// The help of SEQUENCE and of --settings for such a program.
+DatasetHelp HelpOfAnyDataset();
+
+// The data set at a path. Throws InputError for choices that it does not have.
+FoundDataset FindGivenDataset(const std::filesystem::path& path,
+                              const AnyDatasetArguments& arguments);
+
+// Opens a data set, and prints the warnings of its settings.
+OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& request);
+
+// Finds and opens the data set at the path of the request, as OpenDatasetLoudly() does. The sensor
+// and the choices of the request are those of `arguments`.
+OpenedDataset OpenAnyDataset(const AnyDatasetArguments& arguments, DatasetRequest request);
+
+// "rgbd_tum"
+std::string ProgramOf(const Dataset& dataset, SensorKind sensor);
+
+}  // namespace hullslam
