@@ -2,7 +2,7 @@
 import os
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -24,8 +24,27 @@ class InputError(ValueError):
 
 class SettingsTable:
     """The registry of settings. hullslam.Settings is derived from it."""
+    @overload
     def __init__(self, file: _Path | None = None, preset: str | None = None,
-                 overrides: Sequence[str] = ...) -> None: ...
+                 overrides: Sequence[str] = ...) -> None:
+        """Overloaded function.
+
+        1. __init__(self: hullslam._core.SettingsTable, file: Optional[os.PathLike] = None, preset: Optional[str] = None, overrides: List[str] = []) -> None
+
+        2. __init__(self: hullslam._core.SettingsTable, other: hullslam._core.SettingsTable) -> None
+
+        A copy.
+        """
+    @overload
+    def __init__(self, other: SettingsTable) -> None:
+        """Overloaded function.
+
+        1. __init__(self: hullslam._core.SettingsTable, file: Optional[os.PathLike] = None, preset: Optional[str] = None, overrides: List[str] = []) -> None
+
+        2. __init__(self: hullslam._core.SettingsTable, other: hullslam._core.SettingsTable) -> None
+
+        A copy.
+        """
     @property
     def warnings(self) -> list[str]:
         """What the reader has to say about the settings: list of str."""
@@ -176,6 +195,11 @@ class SequenceFrame:
         """(height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in metres;
         None without depth.
         """
+    @property
+    def right(self) -> _Image | None:
+        """(height, width) uint8, the right image of a stereo camera, rectified as `image`; None
+        without one.
+        """
 
 class ImageSequence:
     """The frames of a data set, which are decoded one by one."""
@@ -185,6 +209,17 @@ class ImageSequence:
     @property
     def timestamps(self) -> _Doubles:
         """(N,) float64, s."""
+    @property
+    def mode(self) -> Literal["rgbd", "mono", "stereo"]:
+        """'rgbd', 'mono' or 'stereo': the mode of a System for these frames, as open() has
+        found it.
+        """
+    @property
+    def notes(self) -> list[str]:
+        """What open() has found: list of str; empty without it."""
+    @property
+    def warnings(self) -> list[str]:
+        """Faults in the files that do not end a run: list of str."""
     @property
     def groundtruth(self) -> Trajectory | None:
         """The true Trajectory; None if the data set has none."""
@@ -401,7 +436,9 @@ class System:
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
         masks_right: Masks of the objects in the right image, or None.
         timestamp: s, larger than that of the frame before.
-        Raises InputError for anything else; a refused frame changes nothing.
+        Raises InputError for anything else, also for pairs that are swapped, the same or not
+        rectified, and for float32 depth that cannot be metres; a refused frame changes
+        nothing. Warns of input that can be used but hardly is what was meant.
         """
     def await_masks(self, is_on: bool) -> None:
         """From now on, frames that are tracked without masks await those of add_masks(): a
@@ -471,6 +508,11 @@ class KnownPoseMapper:
     @property
     def map(self) -> Map:
         """A snapshot of the views as keyframes, and of the objects: Map."""
+    @property
+    def warnings(self) -> list[str]:
+        """What is odd about the views so far, such as poses in another unit than the depth:
+        list of str.
+        """
 
 def preset_names() -> list[str]:
     """The names of the presets (docs/presets.md)."""

@@ -60,7 +60,13 @@ class AnyDataset : public MonoProgram {
     EXPECT_EQ(checked.exit_code, 0) << checked.errors;
     ExpectParts(checked.output, {"instances                       12",
                                  "kept                            12", "1 pictures are in"});
-    arguments = {path, "--masks", masks, "--poses", truth, "--output", output_.string()};
+    arguments = {path,
+                 "--masks",
+                 masks,
+                 "--poses",
+                 truth,
+                 "--output",
+                 (folder_.path() / "objects").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult mapped = RunProgram("hullslam map-objects", arguments);
     EXPECT_EQ(mapped.exit_code, 0) << mapped.errors;
