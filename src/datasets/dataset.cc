@@ -106,6 +106,9 @@ const char* ToString(SensorKind sensor) {
 }
 
 FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor) {
+  if (!IsThere(path)) {
+    throw InputError(path.string() + ": no such file or folder, expected a sequence");
+  }
   FoundDataset found;
   if (sensor) {
     found = {FindMeant(path, *sensor), *sensor, {}};

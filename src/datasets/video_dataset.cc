@@ -51,7 +51,8 @@ void CheckCamera(const DatasetRequest& request, const std::optional<double>& fov
   if (request.settings.empty() && !fov) {
     throw InputError(
         "neither --settings nor --fov is given, expected --settings FILE with the calibration of "
-        "the camera, or --fov DEGREES for a first try without it");
+        "the camera, or --fov DEGREES for a first try without it; " +
+        request.path.string() + " is read as a video or a folder of images");
   }
   if (!request.settings.empty() && fov) {
     throw InputError(

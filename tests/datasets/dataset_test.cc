@@ -150,13 +150,13 @@ TEST(Datasets, ThePathTellsTheDataSetAndTheSensor) {
       {"tartan", "stereo_folder", SensorKind::kStereo},
       {"pairs", "stereo_folder", SensorKind::kStereo},
       {"photos", "video", SensorKind::kMonocular},
-      {"walk.mp4", "video", SensorKind::kMonocular},
-      {"none", "video", SensorKind::kMonocular}};
+      {"walk.mp4", "video", SensorKind::kMonocular}};
   for (const auto& [name, dataset, sensor] : cases) {
     const FoundDataset found = FindDataset(folder.path() / name);
     EXPECT_EQ(found.dataset->name, dataset) << name;
     EXPECT_EQ(found.sensor, sensor) << name;
   }
+  ExpectInputError([&] { FindDataset(folder.path() / "none"); }, {"none: no such file"});
   EXPECT_NE(FindDataset(folder.path() / "tum").note.find("TUM RGB-D, RGB-D (--mono would do, too)"),
             std::string::npos)
       << FindDataset(folder.path() / "tum").note;

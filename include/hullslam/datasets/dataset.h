@@ -113,7 +113,7 @@ struct FoundDataset {
 
 // Finds the data set at a path. Without a sensor, that with the most information is taken: RGB-D,
 // then stereo, then monocular. If nothing is recognised, the last data set of the sensor is taken,
-// whose error tells what it expects.
+// whose error tells what it expects. Throws InputError if nothing is at the path.
 FoundDataset FindDataset(const std::filesystem::path& path,
                          std::optional<SensorKind> sensor = std::nullopt);
 
