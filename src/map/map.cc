@@ -70,6 +70,7 @@ Map Map::Snapshot() {
   copy.index_ = index_.Snapshot();
   copy.replaced_landmarks_ = replaced_landmarks_;
   copy.replaced_objects_ = replaced_objects_;
+  copy.objects_of_session_ = objects_of_session_;
   copy.culled_ = culled_.Snapshot();
   copy.keyframe_of_frame_ = keyframe_of_frame_.Snapshot();
   copy.sessions_ = sessions_;
@@ -89,6 +90,7 @@ void Map::BeginSession(Session session) {
             (sessions_.empty() || sessions_.back().first_frame < session.first_frame),
         "a session begins after all others");
   sessions_.push_back(std::move(session));
+  objects_of_session_ = objects_.NextId();
 }
 
 FrameId Map::NextFrame() const { return keyframe_of_frame_.NextId(); }
@@ -250,7 +252,7 @@ ObjectId Map::Resolve(ObjectId object) const {
 
 void Map::ForgetReplaced(uint32_t revision) {
   replaced_landmarks_.Forget(revision);
-  replaced_objects_.Forget(revision);
+  replaced_objects_.Forget(revision, objects_of_session_);
 }
 
 void Map::ReplaceFrame(KeyframeId id, std::shared_ptr<const Frame> frame) {

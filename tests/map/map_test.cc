@@ -197,6 +197,26 @@ TEST(Map, ForgetsReplacementsThatAreOlderThanASnapshot) {
   EXPECT_EQ(second.Resolve(ids[0]), ids[3]) << "the snapshot keeps what it knows";
 }
 
+// The changes of a session are found at its end, long after an object was fused into another one.
+TEST(Map, RemembersWhatReplacedObjectsOfEarlierSessions) {
+  Map map;
+  AddKeyframe(map, 5);
+  const ObjectId earlier = map.AddObject();
+  EXPECT_FALSE(map.IsOfEarlierSession(earlier));
+  map.BeginSession({"second", map.NextFrame()});
+  const ObjectId first = map.AddObject();
+  const ObjectId second = map.AddObject();
+  EXPECT_TRUE(map.IsOfEarlierSession(earlier));
+  EXPECT_FALSE(map.IsOfEarlierSession(first));
+  map.ReplaceObject(earlier, first);
+  map.ReplaceObject(first, second);
+  map.Snapshot();
+  map.ForgetReplaced(map.revision());
+  EXPECT_EQ(map.Resolve(earlier), second);
+  EXPECT_FALSE(map.Resolve(first).IsValid());
+  EXPECT_TRUE(map.Snapshot().IsOfEarlierSession(earlier));
+}
+
 // A root and three keyframes, each the child of the one before, at random poses.
 class CulledKeyframes : public ::testing::Test {
  protected:

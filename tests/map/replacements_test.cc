@@ -30,6 +30,17 @@ TEST(Replacements, TellsGenerationsOfASlotApart) {
   EXPECT_EQ(replacements.Find(LandmarkId(3, 2)), nullptr);
 }
 
+TEST(Replacements, KeepsThoseOfSmallIdsAndFollowsThem) {
+  Replacements<ObjectId> replacements;
+  replacements.Add(ObjectId(1), ObjectId(7), 0);
+  replacements.Add(ObjectId(7), ObjectId(8), 1);
+  replacements.Add(ObjectId(8), ObjectId(9), 2);
+  replacements.Forget(10, ObjectId(2));
+  EXPECT_EQ(replacements.size(), 1u);
+  ASSERT_NE(replacements.Find(ObjectId(1)), nullptr);
+  EXPECT_EQ(*replacements.Find(ObjectId(1)), ObjectId(9));
+}
+
 TEST(Replacements, ForgetsOlderOnesOnly) {
   Replacements<ObjectId> replacements;
   for (uint32_t i = 0; i < 10; ++i) {

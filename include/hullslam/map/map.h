@@ -93,8 +93,12 @@ class Map {
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
 
+  // Whether the object was made before the newest session began.
+  bool IsOfEarlierSession(ObjectId object) const { return object < objects_of_session_; }
+
   // Forgets which landmarks and objects were replaced before the snapshot of this revision was
-  // taken. To be called when no message with ids of older snapshots can arrive any more.
+  // taken. To be called when no message with ids of older snapshots can arrive any more. Objects of
+  // earlier sessions are not forgotten, because the session is compared with these.
   void ForgetReplaced(uint32_t revision);
   // The number of remembered replacements.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
@@ -184,6 +188,7 @@ class Map {
   InvertedIndex index_;
   Replacements<LandmarkId> replaced_landmarks_;
   Replacements<ObjectId> replaced_objects_;
+  ObjectId objects_of_session_ = ObjectId(0);  // the newest session makes objects from this id on
   CowTable<KeyframeId, CulledKeyframe> culled_;
   CowTable<FrameId, KeyframeId> keyframe_of_frame_;  // culled keyframes included
   std::vector<Session> sessions_;

@@ -26,9 +26,17 @@ class Replacements {
     return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;
   }
 
-  // Forgets replacements with an older revision.
-  void Forget(uint32_t revision) {
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.revision < revision; });
+  // Forgets replacements with an older revision, but not those of ids before `kept`. These then
+  // lead to the id that is in use now, so they do not need the forgotten ones.
+  void Forget(uint32_t revision, IdType kept = IdType(0)) {
+    for (Entry& entry : entries_) {
+      while (const IdType* const next = entry.replaced < kept ? Find(entry.by) : nullptr) {
+        entry.by = *next;
+      }
+    }
+    std::erase_if(entries_, [&](const Entry& entry) {
+      return entry.revision < revision && !(entry.replaced < kept);
+    });
   }
 
   size_t size() const { return entries_.size(); }
