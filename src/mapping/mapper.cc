@@ -39,6 +39,16 @@ size_t CountSizedKeyframes(const Map& map, const std::map<std::string, double>& 
   return views;
 }
 
+std::vector<ObjectId> MappedObjects(const Map& map) {
+  std::vector<ObjectId> mapped;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (object.state == ObjectState::kMapped) {
+      mapped.push_back(id);
+    }
+  });
+  return mapped;
+}
+
 }  // namespace
 
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
@@ -55,6 +65,7 @@ void Mapper::Begin(Map map, Session session) {
   if (!map.keyframes().empty()) {
     map_ = std::move(map);
     former_ = map_.Snapshot();
+    object_mapper_.Keep(MappedObjects(former_));
     recent_ = FindRecentLandmarks(map_);
     PublishSnapshot();
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/visible_part.h"
+#include "geometry/polygon_overlap.h"
 #include "map/islands.h"
 #include "objects/point_statistics.h"
 #include "objects/resolved_observation.h"
@@ -94,6 +96,29 @@ bool ShouldBeSeenWith(const Map& map, const Sensor& sensor, const ObjectLandmark
   return 2 * inside > seen.observations.size();
 }
 
+// Whether a mask is where the image should show the ellipsoid, at the depth of the ellipsoid.
+bool Covers(const Sensor& sensor, const ResolvedObservation& view, const Ellipsoid& ellipsoid) {
+  constexpr double kLeastOverlap = 0.5;
+  const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid);
+  if (!ellipse || view.detection->points.empty() || !Contains(ellipsoid, Centroid(view))) {
+    return false;
+  }
+  const Eigen::AlignedBox2d image(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
+                                  Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y));
+  return IntersectionOverUnion(VisiblePart(ellipse->Polygon(), sensor.camera, image),
+                               view.detection->hull) >= kLeastOverlap;
+}
+
+// Whether most of the masks of an object cover the ellipsoid of another one.
+bool ShowsMostly(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
+                 const Ellipsoid& other) {
+  const std::vector<ResolvedObservation> views = ResolveObservations(map, object);
+  const auto covering =
+      std::count_if(views.begin(), views.end(),
+                    [&](const ResolvedObservation& view) { return Covers(sensor, view, other); });
+  return 2 * static_cast<size_t>(covering) > views.size();
+}
+
 bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
             const FusionOptions& options) {
   if (!a.has_shape || !b.has_shape || !AreNear(a.ellipsoid, b.ellipsoid)) {
@@ -151,6 +176,32 @@ std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
 
 }  // namespace
 
+std::pair<ObjectId, ObjectId> KeptFirst(const Map& map, ObjectId a, ObjectId b) {
+  const bool a_is_earlier = map.IsOfEarlierSession(a);
+  const bool keep_a =
+      a_is_earlier != map.IsOfEarlierSession(b)
+          ? a_is_earlier
+          : map.objects().At(a).observations.size() >= map.objects().At(b).observations.size();
+  return keep_a ? std::pair(a, b) : std::pair(b, a);
+}
+
+std::optional<ObjectId> FindDoubled(const Map& map, const Sensor& sensor, ObjectId candidate,
+                                    const FusionOptions& options) {
+  const ObjectLandmark& copy = map.objects().At(candidate);
+  const auto most_shared =
+      options.max_shared_keyframes * static_cast<double>(copy.observations.size());
+  std::optional<ObjectId> doubled;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (!doubled && id != candidate && object.state == ObjectState::kMapped &&
+        IslandOf(map, object) == IslandOf(map, copy) && AreNear(copy.ellipsoid, object.ellipsoid) &&
+        static_cast<double>(SharedKeyframes(copy, object)) <= most_shared &&
+        ShowsMostly(map, sensor, copy, object.ellipsoid)) {
+      doubled = id;
+    }
+  });
+  return doubled;
+}
+
 std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId candidate) {
   const ObjectLandmark& part = map.objects().At(candidate);
   std::optional<ObjectId> whole;
@@ -193,8 +244,7 @@ std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
     }
     taken.Insert(first);
     taken.Insert(second);
-    const bool keep_first = a.observations.size() >= b.observations.size();
-    pairs.emplace_back(keep_first ? first : second, keep_first ? second : first);
+    pairs.push_back(KeptFirst(map, first, second));
   }
   return pairs;
 }

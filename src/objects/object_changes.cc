@@ -13,6 +13,7 @@
 #include "geometry/polygon_overlap.h"
 #include "objects/resolved_observation.h"
 #include "objects/visibility.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -26,8 +27,8 @@ Ellipsoid InMap(const Map& map, const Map& former, const ObjectLandmark& object)
          object.ellipsoid;
 }
 
-// Whether a detection with this label may show the object.
-bool MayBe(const ObjectLandmark& object, const std::string& label) {
+// Whether the object has been seen as this class often enough.
+bool HasClass(const ObjectLandmark& object, const std::string& label) {
   constexpr double kLeastShare = 0.2;
   double all = 0.0;
   for (const auto& [name, votes] : object.votes) {
@@ -35,6 +36,85 @@ bool MayBe(const ObjectLandmark& object, const std::string& label) {
   }
   const auto same = object.votes.find(label);
   return same != object.votes.end() && same->second >= kLeastShare * all;
+}
+
+// Whether objects of this map keep their class, so that a thing of another class is another thing.
+// Detectors of real images often call the same screen a laptop and a television.
+bool AreClassesReliable(const Map& map) {
+  constexpr double kMostConfused = 0.05;
+  double all = 2.0;  // the votes, and two of which one is wrong: a short session proves little
+  double confused = 1.0;
+  for (const auto& [id, object] : map.objects()) {
+    const std::string& label = object.Label();
+    for (const auto& [name, votes] : object.votes) {
+      all += votes;
+      confused += name != label ? votes : 0.0;
+    }
+  }
+  return confused <= kMostConfused * all;
+}
+
+// The probability of at most `found` successes in `count` independent trials.
+double ChanceOfAtMost(int found, int count, double probability) {
+  double term = std::pow(1.0 - probability, count);  // of no success
+  double sum = term;
+  for (int k = 1; k <= found; ++k) {
+    term *= (count - k + 1.0) / k * probability / (1.0 - probability);
+    sum += term;
+  }
+  return sum;
+}
+
+// What the keyframes of some sessions tell about the location of an object.
+struct Looks {
+  int expected = 0;                    // keyframes that should show the object
+  int found = 0;                       // those of them that do
+  int replaced = 0;                    // those that show another thing there
+  std::vector<SeenSurface> of_object;  // the surfaces that are seen where the object is found
+  std::vector<SeenSurface> missed;     // and where it is neither found nor replaced
+
+  // The share of masks that the detector gives for this object. A few looks prove little, so two
+  // are added, one of which finds it.
+  double Recall() const { return (found + 1.0) / (expected + 2.0); }
+};
+
+// The distance of a surface from the near side of an ellipsoid that is usual for an object, m.
+struct UsualSurface {
+  double median = 0.0;
+  double spread = 0.0;  // robust standard deviation
+};
+
+UsualSurface SurfaceOf(const Looks& present) {
+  if (present.of_object.size() < 3) {
+    return {};
+  }
+  std::vector<double> behind;
+  for (const SeenSurface& surface : present.of_object) {
+    behind.push_back(surface.behind);
+  }
+  UsualSurface usual;
+  usual.median = Median(behind);
+  for (double& value : behind) {
+    value = std::abs(value - usual.median);
+  }
+  usual.spread = 1.4826 * Median(behind);
+  return usual;
+}
+
+// The number of missed looks that show what is behind the object, instead of its own surface.
+int CountBehind(const Looks& looks, const UsualSurface& usual) {
+  // Shares of the thickness. An ellipsoid is no more precise than the first one. The surface of a
+  // hollow thing varies with the view, but what is behind the thing is at least half of the
+  // thickness farther away.
+  constexpr double kLeast = 0.25;
+  constexpr double kMost = 0.5;
+  constexpr double kSigmas = 3.0;
+  return static_cast<int>(
+      std::count_if(looks.missed.begin(), looks.missed.end(), [&](const SeenSurface& surface) {
+        return surface.behind > usual.median + std::clamp(kSigmas * usual.spread,
+                                                          kLeast * surface.thickness,
+                                                          kMost * surface.thickness);
+      }));
 }
 
 // The difference of the sizes of two objects: the larger one of the ratios of their two longest
@@ -55,6 +135,7 @@ class Comparison {
         (keyframe.frame->id < session ? earlier_ : later_).push_back(id);
       }
     }
+    classes_are_reliable_ = AreClassesReliable(former);
   }
 
   std::vector<ChangedObject> Run() {
@@ -83,14 +164,18 @@ class Comparison {
     ObjectLandmark sought = former;
     sought.ellipsoid = InMap(map_, former_, former);
     changed.former = {id, sought.ellipsoid};
-    CountKeyframes(later_, now, sought, changed);
-    changed.change = Judge(changed, ObjectChange::kGone, ObjectChange::kNotSeen);
-    if (changed.change != ObjectChange::kGone) {
+    const Looks later = Look(later_, now, sought);
+    const bool is_gone = HasLeft(later, Look(earlier_, now, sought));
+    changed.expected = later.expected;
+    changed.found = later.found;
+    changed.change = is_gone           ? ObjectChange::kGone
+                     : later.found > 0 ? ObjectChange::kSeenAgain
+                                       : ObjectChange::kNotSeen;
+    if (!is_gone) {
       changed.now = Locate(now);
     }
     if (changed.change == ObjectChange::kSeenAgain && !changed.now) {
       changed.now = Locate(FindSuccessor(sought));
-      changed.change = changed.now ? ObjectChange::kSeenAgain : ObjectChange::kGone;
     }
     return changed;
   }
@@ -121,44 +206,66 @@ class Comparison {
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
     ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
-    CountKeyframes(earlier_, id, object, changed);
-    changed.change = Judge(changed, ObjectChange::kNew, ObjectChange::kFirstSeen);
-    if (changed.change == ObjectChange::kSeenAgain) {
-      changed.change = ObjectChange::kFirstSeen;  // it was seen, but was not mapped
-    }
+    const Looks earlier = Look(earlier_, id, object);
+    changed.expected = earlier.expected;
+    changed.found = earlier.found;
+    changed.change =
+        HasLeft(earlier, Look(later_, id, object)) ? ObjectChange::kNew : ObjectChange::kFirstSeen;
     return changed;
   }
 
-  ObjectChange Judge(const ChangedObject& changed, ObjectChange if_absent,
-                     ObjectChange if_unknown) const {
+  // Whether the object is not where it was seen: `looks` should show it but seldom do, so seldom
+  // that the detector cannot have missed it so often, since it found it in `present`, and what is
+  // behind the object is seen instead.
+  bool HasLeft(const Looks& looks, const Looks& present) const {
+    constexpr double kLeastChance = 0.01;
     const ChangeOptions& limits = options_.changes;
-    if (changed.expected < limits.min_keyframes) {
-      return changed.found > 0 ? ObjectChange::kSeenAgain : if_unknown;
+    if (looks.expected < limits.min_keyframes ||
+        looks.found >= limits.max_found_ratio * looks.expected ||
+        ChanceOfAtMost(looks.found, looks.expected, present.Recall()) > kLeastChance) {
+      return false;
     }
-    return changed.found < limits.max_found_ratio * changed.expected ? if_absent
-                                                                     : ObjectChange::kSeenAgain;
+    const int absent = looks.replaced + CountBehind(looks, SurfaceOf(present));
+    const int measured = looks.replaced + static_cast<int>(looks.missed.size());
+    return absent >= limits.min_keyframes && 2 * absent >= measured;
   }
 
-  void CountKeyframes(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object,
-                      ChangedObject& changed) const {
+  Looks Look(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object) const {
     std::erase_if(object.observations, [&](const ObjectObservation& observation) {
       return !map_.keyframes().Contains(observation.keyframe);
     });
+    Looks looks;
     for (const KeyframeId keyframe : keyframes) {
-      const bool is_found = Shows(map_.keyframes().At(keyframe), id, object);
-      if (is_found || IsSeenWithout(keyframe, id, object)) {
-        ++changed.expected;
-        changed.found += is_found ? 1 : 0;
-      }
+      AddLook(keyframe, id, object, looks);
+    }
+    return looks;
+  }
+
+  void AddLook(KeyframeId id, ObjectId object_id, const ObjectLandmark& object,
+               Looks& looks) const {
+    const Keyframe& keyframe = map_.keyframes().At(id);
+    const bool is_found = Shows(keyframe, object_id, object);
+    const bool is_replaced = !is_found && IsReplaced(keyframe, object_id, object);
+    if (!is_found && !is_replaced && !IsSeenWithout(id, object)) {
+      return;
+    }
+    ++looks.expected;
+    looks.found += is_found ? 1 : 0;
+    looks.replaced += is_replaced ? 1 : 0;
+    const auto surface = MeasureSurface(
+        map_, sensor_,
+        {*keyframe.frame, keyframe.cam_from_world, keyframe.landmarks, keyframe.objects},
+        object.ellipsoid);
+    if (surface && !is_replaced) {
+      (is_found ? looks.of_object : looks.missed).push_back(*surface);
     }
   }
 
   // Whether a keyframe that does not show the object shows its location.
-  bool IsSeenWithout(KeyframeId id, ObjectId object_id, const ObjectLandmark& object) const {
+  bool IsSeenWithout(KeyframeId id, const ObjectLandmark& object) const {
     const Keyframe& keyframe = map_.keyframes().At(id);
     const ChangeOptions& limits = options_.changes;
-    return IsReplaced(keyframe, object_id, object) ||
-           SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
+    return SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
                        limits.min_seen_through) ||
            FindVisibility(map_, sensor_, id, object, options_, limits.min_inside) ==
                LocationVisibility::kVisible;
@@ -198,13 +305,20 @@ class Comparison {
       if (keyframe.objects[i] == id && id.IsValid()) {
         return true;
       }
+      const double least = HasClass(object, detection.label) ? options_.changes.min_overlap
+                                                             : kLeastOverlapOfOtherClass;
       if (!WasMapped(keyframe.objects[i]) &&
-          IntersectionOverUnion(projected, detection.hull) >= options_.changes.min_overlap &&
+          IntersectionOverUnion(projected, detection.hull) >= least &&
           IsThere(keyframe, detection, object)) {
         return true;
       }
     }
     return false;
+  }
+
+  // Whether a thing of this class may be the object.
+  bool MayBe(const ObjectLandmark& object, const std::string& label) const {
+    return !classes_are_reliable_ || HasClass(object, label);
   }
 
   bool WasMapped(ObjectId id) const {
@@ -288,6 +402,7 @@ class Comparison {
   }
 
   static constexpr double kNever = 1e3;
+  static constexpr double kLeastOverlapOfOtherClass = 0.5;
 
   const Map& former_;
   const Map& map_;
@@ -296,6 +411,7 @@ class Comparison {
   std::vector<KeyframeId> earlier_;
   std::vector<KeyframeId> later_;  // those of the session
   std::set<ObjectId> successors_;  // those that FindSuccessor has found
+  bool classes_are_reliable_ = true;
 };
 
 }  // namespace

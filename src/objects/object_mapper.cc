@@ -76,6 +76,25 @@ RefinedStart RefineBest(std::span<const Ellipsoid> starts, const Sensor& sensor,
   return best;
 }
 
+// The object that is kept takes the shape of the duplicate if that has more observations.
+void ReplaceDuplicate(Map& map, ObjectId duplicate, ObjectId kept) {
+  const ObjectLandmark before = map.objects().At(duplicate);
+  const bool is_better =
+      before.has_shape && before.observations.size() > map.objects().At(kept).observations.size();
+  map.ReplaceObject(duplicate, kept);
+  if (is_better) {
+    ObjectLandmark& changed = map.MutableObject(kept);
+    changed.state = before.state;
+    changed.has_shape = true;
+    changed.ellipsoid = before.ellipsoid;
+    changed.start = before.start;
+    changed.shaped_views = before.shaped_views;
+    changed.misfit_px = before.misfit_px;
+    changed.compensated_px = before.compensated_px;
+    changed.misfit_samples = before.misfit_samples;
+  }
+}
+
 }  // namespace
 
 ObjectMapper::ObjectMapper(const Sensor& sensor, const ObjectOptions& options)
@@ -221,6 +240,10 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ResolvedObservat
   object.has_shape = true;
   object.ellipsoid = best.refinement.ellipsoid;
   object.start = best.start;
+  if (const auto doubled = FindDoubled(map, sensor_, id, options_.fusion)) {
+    Fuse(map, id, *doubled);
+    return;
+  }
   if (const auto objection =
           FindObjection(object.ellipsoid, sensor_, observations, options_.validity)) {
     Reject(map, id, *objection);
@@ -344,12 +367,16 @@ std::vector<ObjectId> ObjectMapper::TakeChanged(const Map& map, KeyframeId keyfr
 void ObjectMapper::FuseDuplicates(Map& map, KeyframeId keyframe) {
   const std::vector<ObjectId> changed = TakeChanged(map, keyframe);
   for (const auto& [kept, duplicate] : FindDuplicates(map, changed, options_.fusion)) {
-    spdlog::debug("object {} fused into object {}", duplicate.value, kept.value);
-    ++rejections_[ObjectRejection::kFused];
-    map.ReplaceObject(duplicate, kept);
-    if (!map.objects().At(kept).observations.empty()) {
-      Update(map, kept);
-    }
+    Fuse(map, duplicate, kept);
+  }
+}
+
+void ObjectMapper::Fuse(Map& map, ObjectId duplicate, ObjectId kept) {
+  spdlog::debug("object {} fused into object {}", duplicate.value, kept.value);
+  ++rejections_[ObjectRejection::kFused];
+  ReplaceDuplicate(map, duplicate, kept);
+  if (!map.objects().At(kept).observations.empty()) {
+    Update(map, kept);
   }
 }
 
@@ -364,13 +391,14 @@ std::optional<Objection> ObjectMapper::ReasonToCull(const Map& map, KeyframeId k
   if (object.observations.empty()) {
     return seldom("no keyframe observes the object any more");
   }
+  const bool is_kept = std::binary_search(kept_.begin(), kept_.end(), id);
   const auto patience = static_cast<uint32_t>(culling.candidate_keyframes);
-  if (object.state == ObjectState::kCandidate &&
+  if (!is_kept && object.state == ObjectState::kCandidate &&
       AgeOf(map, LastObserver(map, object.observations), keyframe, patience + 1) > patience) {
     return seldom(
         fmt::format("not mapped yet, and not seen for {} keyframes", culling.candidate_keyframes));
   }
-  if (object.visible >= culling.min_visible &&
+  if (!is_kept && object.visible >= culling.min_visible &&
       object.found < culling.min_found_ratio * object.visible) {
     return seldom(fmt::format("found in {} of the {} keyframes that should show it", object.found,
                               object.visible));

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
@@ -23,6 +24,10 @@ class ObjectMapper {
  public:
   // `sensor` must outlive the mapper.
   ObjectMapper(const Sensor& sensor, const ObjectOptions& options);
+
+  // Objects of earlier sessions, by increasing id, that are not removed for being seldom seen. At
+  // the end of the session FindObjectChanges tells whether they are gone.
+  void Keep(std::vector<ObjectId> objects) { kept_ = std::move(objects); }
 
   // To be called once per keyframe, after the keyframe and its landmarks were added to the map.
   void Process(Map& map, KeyframeId keyframe);
@@ -56,6 +61,7 @@ class ObjectMapper {
   size_t NeededKeyframes(const ObjectLandmark& object) const;
   Objection FewKeyframes(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map, KeyframeId keyframe);
+  void Fuse(Map& map, ObjectId duplicate, ObjectId kept);
   std::vector<ObjectId> TakeChanged(const Map& map, KeyframeId keyframe);
   std::optional<Objection> ReasonToCull(const Map& map, KeyframeId keyframe, ObjectId id);
   void Cull(Map& map, KeyframeId keyframe);
@@ -66,6 +72,7 @@ class ObjectMapper {
   std::map<ObjectRejection, size_t> rejections_;
   // The objects that may have changed since the last search for duplicates, in any order.
   std::vector<ObjectId> changed_;
+  std::vector<ObjectId> kept_;  // by increasing id
   Contradictions<ObjectId> contradictions_;
   bool may_all_have_changed_ = true;
 };

@@ -7,11 +7,12 @@
 #include "geometry/polyline.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr int kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden
+constexpr size_t kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden
 
 // Counts how many of the samples on a projected ellipse are nearer than a depth.
 class HiddenCounter {
@@ -29,15 +30,16 @@ class HiddenCounter {
   }
 
   bool IsHidden(double max_hidden) const {
-    return samples_ >= kFewSamples && nearer_ > max_hidden * samples_;
+    return samples_ >= kFewSamples &&
+           static_cast<double>(nearer_) > max_hidden * static_cast<double>(samples_);
   }
 
  private:
   Eigen::Vector2d center_;
   Eigen::Matrix2d inverse_shape_;
   double depth_;
-  int samples_ = 0;
-  int nearer_ = 0;
+  size_t samples_ = 0;
+  size_t nearer_ = 0;
 };
 
 // The box of raw pixels of a box of undistorted ones. With a fisheye lens the sides bulge out.
@@ -75,15 +77,59 @@ void ForEachSample(const DepthGrid& grid, const PinholeCamera& camera,
   }
 }
 
-void AddLandmarks(const Map& map, const ImageKnowledge& image, HiddenCounter& counter) {
+// The same for the depth of each sample that the image has in a box or, without a depth image, of
+// each landmark that it shows.
+template <typename Use>
+void ForEachDepth(const Map& map, const PinholeCamera& camera, const ImageKnowledge& image,
+                  const Eigen::AlignedBox2d& bounds, const Use& use) {
+  if (!image.frame.depth.empty()) {
+    ForEachSample(image.frame.depth, camera, bounds, use);
+    return;
+  }
   for (size_t i = 0; i < image.landmarks.size(); ++i) {
     if (image.landmarks[i].IsValid()) {
       const Eigen::Vector3d& position = map.landmarks().At(image.landmarks[i]).position;
-      counter.Add(image.frame.features.keypoints[i].undistorted.cast<double>(),
-                  (image.cam_from_world * position).z());
+      use(image.frame.features.keypoints[i].undistorted.template cast<double>(),
+          (image.cam_from_world * position).z());
     }
   }
 }
+
+// The part of a ray inside an ellipsoid, as depths (z, m).
+struct RayThrough {
+  double middle = 0.0;
+  double half = 0.0;
+};
+
+// Passes the rays near the centre of an ellipsoid on, with the depth (z, m) that was measured along
+// them.
+class RayFilter {
+ public:
+  RayFilter(const PinholeCamera& camera, const Rigid3& cam_from_world, const Ellipsoid& ellipsoid)
+      : camera_(camera),
+        object_from_cam_(Inverse(cam_from_world * ellipsoid.world_from_object)),
+        half_axes_(ellipsoid.half_axes) {}
+
+  template <typename Use>
+  void Pass(const Eigen::Vector2d& pixel, double z, const Use& use) const {
+    constexpr double kMiddle = 0.5;  // squared distance of a ray from the centre, in radii
+    // In coordinates in which the ellipsoid is the unit sphere, a sample of depth z is at
+    // origin + z * direction.
+    const Eigen::Vector3d origin = object_from_cam_.translation.cwiseQuotient(half_axes_);
+    const Eigen::Vector3d direction =
+        (object_from_cam_.rotation * camera_.Unproject(pixel, 1.0)).cwiseQuotient(half_axes_);
+    const double middle = -origin.dot(direction) / direction.squaredNorm();
+    const double from_center = (origin + middle * direction).squaredNorm();
+    if (from_center <= kMiddle) {
+      use(RayThrough{middle, std::sqrt((1.0 - from_center) / direction.squaredNorm())}, z);
+    }
+  }
+
+ private:
+  const PinholeCamera& camera_;
+  Rigid3 object_from_cam_;
+  Eigen::Vector3d half_axes_;
+};
 
 // The share of the area of an ellipse's box that is in the image; exactly 1 if it is there as a
 // whole. With a fisheye lens, whose undistorted image is no box, and with a mask of all images, the
@@ -154,12 +200,8 @@ LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, const Im
   const double depth =
       DepthsOf(in_cam).nearest - NearSurface(object.ellipsoid, distance, options.validity);
   HiddenCounter counter(*ellipse, depth);
-  if (image.frame.depth.empty()) {
-    AddLandmarks(map, image, counter);
-  } else {
-    ForEachSample(image.frame.depth, sensor.camera, ellipse->Bounds(),
-                  [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
-  }
+  ForEachDepth(map, sensor.camera, image, ellipse->Bounds(),
+               [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
   return counter.IsHidden(options.culling.max_hidden) || IsBehindObject(map, image, *ellipse, depth)
              ? LocationVisibility::kHidden
              : LocationVisibility::kVisible;
@@ -175,30 +217,47 @@ LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, Keyframe
                         object, options, min_inside);
 }
 
+std::optional<SeenSurface> MeasureSurface(const Map& map, const Sensor& sensor,
+                                          const ImageKnowledge& image, const Ellipsoid& ellipsoid) {
+  const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, ellipsoid);
+  if (!ellipse) {
+    return std::nullopt;
+  }
+  std::vector<double> behind;
+  std::vector<double> thickness;
+  const RayFilter filter(sensor.camera, image.cam_from_world, ellipsoid);
+  ForEachDepth(map, sensor.camera, image, ellipse->Bounds(),
+               [&](const Eigen::Vector2d& pixel, double z) {
+                 filter.Pass(pixel, z, [&](const RayThrough& ray, double depth) {
+                   behind.push_back(depth - (ray.middle - ray.half));
+                   thickness.push_back(2.0 * ray.half);
+                 });
+               });
+  if (behind.size() < kFewSamples) {
+    return std::nullopt;
+  }
+  return SeenSurface{.behind = Median(std::move(behind)),
+                     .thickness = Median(std::move(thickness))};
+}
+
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
                  const Ellipsoid& ellipsoid, double min_share) {
-  constexpr double kMiddle = 0.5;  // squared distance of a ray from the centre, in radii
   const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), cam_from_world, ellipsoid);
   if (!ellipse) {
     return false;
   }
-  // In coordinates in which the ellipsoid is the unit sphere, a sample of depth z is at
-  // origin + z * direction.
-  const Rigid3 object_from_cam = Inverse(cam_from_world * ellipsoid.world_from_object);
-  const Eigen::Vector3d origin = object_from_cam.translation.cwiseQuotient(ellipsoid.half_axes);
-  int samples = 0;
-  int behind = 0;
-  ForEachSample(
-      frame.depth, sensor.camera, ellipse->Bounds(), [&](const Eigen::Vector2d& pixel, double z) {
-        const Eigen::Vector3d ray = object_from_cam.rotation * sensor.camera.Unproject(pixel, 1.0);
-        const Eigen::Vector3d direction = ray.cwiseQuotient(ellipsoid.half_axes);
-        const double nearest = -origin.dot(direction) / direction.squaredNorm();
-        if ((origin + nearest * direction).squaredNorm() <= kMiddle) {
-          ++samples;
-          behind += z > nearest && (origin + z * direction).squaredNorm() > 1.0 ? 1 : 0;
-        }
-      });
-  return samples >= kFewSamples && behind >= min_share * samples;
+  const RayFilter filter(sensor.camera, cam_from_world, ellipsoid);
+  size_t samples = 0;
+  size_t behind = 0;
+  ForEachSample(frame.depth, sensor.camera, ellipse->Bounds(),
+                [&](const Eigen::Vector2d& pixel, double z) {
+                  filter.Pass(pixel, z, [&](const RayThrough& ray, double depth) {
+                    ++samples;
+                    behind += depth > ray.middle + ray.half ? 1 : 0;
+                  });
+                });
+  return samples >= kFewSamples &&
+         static_cast<double>(behind) >= min_share * static_cast<double>(samples);
 }
 
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "hullslam/frame/frame.h"
@@ -38,6 +39,18 @@ LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, const Im
 LocationVisibility FindVisibility(const Map& map, const Sensor& sensor, KeyframeId keyframe,
                                   const ObjectLandmark& object, const ObjectOptions& options,
                                   double min_inside = 1.0);
+
+// The surface that an image shows where an ellipsoid should be: medians over the samples near its
+// centre, along the viewing direction, m.
+struct SeenSurface {
+  double behind = 0.0;     // behind the near side of the ellipsoid; negative if in front of it
+  double thickness = 0.0;  // of the ellipsoid
+};
+
+// From the depth image or, without one, from the landmarks that the image shows. Nothing if there
+// are too few samples.
+std::optional<SeenSurface> MeasureSurface(const Map& map, const Sensor& sensor,
+                                          const ImageKnowledge& image, const Ellipsoid& ellipsoid);
 
 // Whether the depth of an image shows that the ellipsoid is not there: at least the share
 // `min_share` of the depth samples near its centre were measured behind it. False if there are too

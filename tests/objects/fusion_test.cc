@@ -136,6 +136,54 @@ TEST_F(Duplicates, AnObjectIsInOnePairAtMost) {
   EXPECT_EQ(FindDuplicates(map_).size(), 1u);
 }
 
+// Later changes are reported of the objects of earlier sessions.
+TEST_F(Duplicates, TheOneOfAnEarlierSessionStays) {
+  Look({cup_, near_}, 3);
+  const ObjectId earlier = Add(cup_, {0, 1}, 0);
+  map_.BeginSession({"second", map_.NextFrame()});
+  Look({cup_, near_}, 4);
+  const ObjectId later = Add(near_, {3, 4, 5, 6}, 1);
+  EXPECT_EQ(KeptFirst(map_, later, earlier), std::pair(earlier, later));
+  const auto pairs = FindDuplicates(map_);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0], std::pair(earlier, later));
+}
+
+// The candidate has another class than the mapped cup, and a shape that is far too thin.
+class Doubled : public Duplicates {
+ protected:
+  Doubled() {
+    copy_.label = "vase";
+    copy_.ellipsoid.half_axes = {0.002, 0.05, 0.08};
+    Look({cup_, cup_, far_}, 8);
+    original_ = Add(cup_, {0, 1, 2, 3}, 0);
+    map_.MutableObject(original_).state = ObjectState::kMapped;
+  }
+  MadeObject copy_ = cup_;
+  ObjectId original_;
+};
+
+TEST_F(Doubled, MasksTellWhatAWrongShapeHides) {
+  const ObjectId copy = Add(copy_, {4, 5, 6, 7}, 1);
+  EXPECT_TRUE(FindDuplicates(map_, {.alpha = 1.0}).empty());
+  EXPECT_EQ(FindDoubled(map_, sensor_, copy), original_);
+  map_.MutableObject(original_).state = ObjectState::kCandidate;
+  EXPECT_FALSE(FindDoubled(map_, sensor_, copy));
+}
+
+TEST_F(Doubled, ThoseSeenTogetherAreTwo) {
+  EXPECT_FALSE(FindDoubled(map_, sensor_, Add(copy_, {2, 3, 4, 5}, 1)));
+}
+
+TEST_F(Doubled, MasksBesideItAreOfAnotherThing) {
+  EXPECT_FALSE(FindDoubled(map_, sensor_, Add(copy_, {4, 5, 6, 7}, 2)));
+}
+
+TEST_F(Doubled, MasksInFrontOfItAreOfAnotherThing) {
+  map_.MutableObject(original_).ellipsoid.half_axes *= 0.5;
+  EXPECT_FALSE(FindDoubled(map_, sensor_, Add(copy_, {4, 5, 6, 7}, 1)));
+}
+
 // A book under another one: first its left end is seen, then its right end.
 class Parts : public Duplicates {
  protected:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -86,6 +87,31 @@ inline Detection Detect(const MadeObject& object, const Sensor& sensor,
   return detection;
 }
 
+// The depth image of these objects before a wall at this depth (m).
+inline DepthGrid DepthOf(const std::vector<MadeObject>& objects, const Sensor& sensor,
+                         const Rigid3& cam_from_world, double wall) {
+  std::vector<uint16_t> samples;
+  const int columns = DepthGrid::CountAlong(640);
+  for (int i = 0; i < columns * DepthGrid::CountAlong(480); ++i) {
+    const Eigen::Vector3d ray =
+        sensor.camera.Unproject(DepthGrid::RawPixel(i % columns, i / columns), 1.0);
+    double nearest = wall;
+    for (const MadeObject& object : objects) {
+      const Rigid3 object_from_cam = Inverse(cam_from_world * object.ellipsoid.world_from_object);
+      const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+      const Eigen::Vector3d origin = object_from_cam.translation.cwiseQuotient(axes);
+      const Eigen::Vector3d along = (object_from_cam.rotation * ray).cwiseQuotient(axes);
+      const double b = origin.dot(along) / along.squaredNorm();
+      const double root = b * b - (origin.squaredNorm() - 1.0) / along.squaredNorm();
+      if (root > 0.0 && -b - std::sqrt(root) > 0.0) {
+        nearest = std::min(nearest, -b - std::sqrt(root));
+      }
+    }
+    samples.push_back(static_cast<uint16_t>(std::lround(1e3 * nearest)));
+  }
+  return DepthGrid(columns, std::move(samples));
+}
+
 // The line, which is a tangent of the ellipse, moved outwards by so many px of the image in which
 // distances are measured (Sensor::ToGrid).
 inline Line2 MovedInImage(const Sensor& sensor, const Ellipse& ellipse, const Line2& tangent,
@@ -123,6 +149,16 @@ inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_
     frame->detections.push_back(Detect(object, sensor, cam_from_world));
   }
   return AddToTree(map, std::move(frame), cam_from_world);
+}
+
+// The same, with the depth of the objects before a wall at 4 m.
+inline KeyframeId AddObserverWithDepth(Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
+                                       const std::vector<MadeObject>& objects) {
+  const KeyframeId keyframe = AddObserver(map, sensor, cam_from_world, objects);
+  auto frame = std::make_shared<Frame>(*map.keyframes().At(keyframe).frame);
+  frame->depth = DepthOf(objects, sensor, cam_from_world, 4.0);
+  map.ReplaceFrame(keyframe, frame);
+  return keyframe;
 }
 
 // A textured object, which keyframes without depth see together with landmarks on its surface.

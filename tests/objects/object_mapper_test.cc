@@ -127,6 +127,41 @@ TEST_F(Mapping, AMappedObjectThatIsNeverFoundAgainIsCulled) {
   EXPECT_EQ(Mapped().size(), 1u);
 }
 
+// It may be hidden for a whole session, or have fewer masks there.
+TEST_F(Mapping, AnObjectOfAnEarlierSessionIsKeptUntilItsEnd) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  mapper_.Keep({ObjectId(1)});
+  for (int i = 0; i < 30; ++i) {
+    See({table[0]}, 0.02 * i);
+  }
+  EXPECT_TRUE(map_.objects().Contains(ObjectId(1)));
+  EXPECT_FALSE(map_.objects().Contains(ObjectId(2)));
+}
+
+// A new object of another class, whose shape is not valid, has taken the observations of the cup.
+TEST_F(Mapping, ADoubledObjectIsFusedIntoTheMappedOne) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 3u);
+  const size_t observations = map_.objects().At(ObjectId(0)).observations.size();
+  const ObjectId copy = map_.AddObject();
+  MadeObject vase = table[0];
+  vase.label = "vase";
+  for (int i = 5; i < 9; ++i) {
+    map_.AddObservation(copy, AddObserver(map_, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.8), {vase}),
+                        0);
+  }
+  mapper_.RefineMerged(map_, std::vector{copy});
+  EXPECT_FALSE(map_.objects().Contains(copy));
+  EXPECT_EQ(map_.Resolve(copy), ObjectId(0));
+  EXPECT_EQ(map_.objects().At(ObjectId(0)).observations.size(), observations + 4);
+}
+
 TEST_F(Mapping, AnObjectThatIsNoLongerValidIsACandidateAgain) {
   const auto table = MakeTable();
   for (int i = 0; i < 5; ++i) {

@@ -245,5 +245,45 @@ TEST_F(SeeingThrough, WorksFartherAwayAndAtTheBorder) {
   EXPECT_FALSE(IsSeen(aside, Wall(4000)));
 }
 
+// The near side of the cup is at 0.94 m, its far side at 1.06 m. Rays near its centre see it nearly
+// there.
+TEST_F(Visibility, TheSurfaceIsMeasuredFromTheNearSide) {
+  const auto surface_before = [&](const cv::Mat& depth) {
+    const Keyframe& keyframe = map_.keyframes().At(Look(Rigid3(), depth));
+    return MeasureSurface(
+        map_, sensor_,
+        {*keyframe.frame, keyframe.cam_from_world, keyframe.landmarks, keyframe.objects}, cup_);
+  };
+  const auto wall = surface_before(Wall(1500));
+  ASSERT_TRUE(wall);
+  EXPECT_NEAR(wall->behind, 0.55, 0.02);
+  EXPECT_NEAR(wall->thickness, 0.10, 0.02);
+  EXPECT_NEAR(surface_before(Wall(900))->behind, -0.05, 0.02);
+  EXPECT_FALSE(surface_before(Wall(0)));
+  EXPECT_FALSE(surface_before({}));
+}
+
+// A camera without depth sees landmarks.
+TEST_F(Visibility, TheSurfaceIsMeasuredFromLandmarks) {
+  auto frame = std::make_shared<Frame>();
+  for (const double x : {318.0, 320.0, 322.0}) {
+    frame->features.keypoints.push_back({.undistorted = Eigen::Vector2f(x, 240.0)});
+  }
+  frame->features.descriptors.resize(3);
+  frame->features.depth.resize(3, 0.0f);
+  frame->features.right_u.resize(3, -1.0f);
+  const KeyframeId id = Add(Rigid3(), frame);
+  for (uint32_t i = 0; i < 3; ++i) {
+    const Eigen::Vector2d pixel = frame->features.keypoints[i].undistorted.cast<double>();
+    map_.AddObservation(map_.AddLandmark(sensor_.camera.Unproject(pixel, 2.0), id), id, i);
+  }
+  const Keyframe& keyframe = map_.keyframes().At(id);
+  const auto surface = MeasureSurface(
+      map_, sensor_,
+      {*keyframe.frame, keyframe.cam_from_world, keyframe.landmarks, keyframe.objects}, cup_);
+  ASSERT_TRUE(surface);
+  EXPECT_NEAR(surface->behind, 1.06, 0.01);
+}
+
 }  // namespace
 }  // namespace hullslam
