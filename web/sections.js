@@ -70,6 +70,20 @@ function objectTable(store, onChoose) {
     number(object.siou), `${number(object.misfit_px, 1)} px`] })));
 }
 
+// What has changed since the earlier sessions, the departures first.
+function changeTable(store, onChoose) {
+  const kinds = ['gone', 'moved', 'new', 'seen_again', 'not_seen', 'first_seen'];
+  const at = (located) => (located ? located.centre.map((value) => value.toFixed(2)).join(', ') : '–');
+  const changes = [...store.get('changes', [])].sort((a, b) => kinds.indexOf(a.change)
+    - kinds.indexOf(b.change));
+  const columns = [{ title: 'Object', isText: true }, { title: 'Change', isText: true },
+    { title: 'Before', isText: true }, { title: 'Now', isText: true }, { title: 'Found in' }];
+  return table(columns, changes.map((changed) => ({
+    onclick: changed.now ? () => onChoose(changed.now.id) : undefined,
+    cells: [`${changed.class} ${(changed.now || changed.former).id}`, words(changed.change),
+      at(changed.former), at(changed.now), `${changed.found} of ${changed.expected}`] })));
+}
+
 function rejections(summary) {
   const counts = Object.entries(at(summary, 'objects', 'rejections') || {})
     .filter((entry) => isNumber(entry[1]) && entry[1] > 0).sort((a, b) => b[1] - a[1]);
@@ -121,6 +135,11 @@ export function sections(store, onChoose, onTime) {
   }
   if (store.get('objects', []).length > 0) {
     list.push(section('Objects', objectTable(store, onChoose), true));
+  }
+  if (store.get('changes', []).length > 0) {
+    const map = at(summary, 'provenance', 'loaded_map');
+    list.push(section(`Changes since ${map ? `the map ${map}` : 'the earlier sessions'}`,
+      changeTable(store, onChoose), true));
   }
   if (Object.keys(at(summary, 'timing', 'stages_ms') || {}).length > 0) {
     list.push(section('Time', timing(summary)));

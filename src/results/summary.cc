@@ -166,6 +166,7 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"dataset", OrNull(summary.dataset)},
           {"sequence_choices", Json(summary.sequence_choices)},
           {"map", OrNull(summary.map)},
+          {"loaded_map", OrNull(summary.loaded_map)},
           {"interrupted", summary.interrupted},
           {"input_failure", OrNull(summary.input_failure)}};
 }

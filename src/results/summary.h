@@ -144,6 +144,7 @@ struct ProvenanceSummary {
   std::optional<std::string> dataset = std::nullopt;         // ImageSequence::dataset
   std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices
   std::optional<std::string> map = std::nullopt;             // the path of --save-map
+  std::optional<std::string> loaded_map = std::nullopt;      // the path of --load-map
   bool interrupted = false;  // a signal ended the run before its end
   // The input that ended the run before its end, and what is wrong with it.
   std::optional<std::string> input_failure = std::nullopt;

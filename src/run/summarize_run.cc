@@ -164,6 +164,9 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
   if (!arguments.save_map.empty()) {
     provenance.map = arguments.save_map.string();
   }
+  if (!arguments.load_map.empty()) {
+    provenance.loaded_map = arguments.load_map.string();
+  }
   provenance.interrupted = result.was_interrupted;
   provenance.input_failure = result.input_failure;
 }

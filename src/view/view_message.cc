@@ -131,6 +131,28 @@ Json RelationsJson(const std::vector<Relation>& relations) {
   return list;
 }
 
+Json LocatedJson(const std::optional<LocatedObject>& located) {
+  if (!located) {
+    return nullptr;
+  }
+  const Eigen::Vector3d& centre = located->ellipsoid.world_from_object.translation;
+  return {{"id", located->object.value},
+          {"centre", std::vector<double>(centre.begin(), centre.end())}};
+}
+
+Json ChangesJson(const std::vector<ChangedObject>& changes) {
+  Json list = Json::array();
+  for (const ChangedObject& changed : changes) {
+    list.push_back({{"change", ToString(changed.change)},
+                    {"class", Printable(changed.label)},
+                    {"former", LocatedJson(changed.former)},
+                    {"now", LocatedJson(changed.now)},
+                    {"expected", changed.expected},
+                    {"found", changed.found}});
+  }
+  return list;
+}
+
 Json SettingsJson(const ViewSettings& settings) {
   Json changed = Json::array();
   for (const ViewSetting& setting : settings.changed) {
@@ -270,6 +292,7 @@ nlohmann::json ViewParts(const ViewModel& model, double start) {
   parts["losses"] = LossesJson(model.summary, start);
   parts["summary"] = model.summary;
   parts["relations"] = RelationsJson(model.relations);
+  parts["changes"] = ChangesJson(model.changes);
   if (model.settings) {
     parts["settings"] = SettingsJson(*model.settings);
   }

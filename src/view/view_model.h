@@ -101,6 +101,7 @@ struct ViewModel {
   std::optional<ViewSettings> settings;
   nlohmann::json summary;  // the content of summary.json, or null
   std::vector<Relation> relations;
+  std::vector<ChangedObject> changes;  // of a run that went on with a map of earlier sessions
 };
 
 }  // namespace hullslam

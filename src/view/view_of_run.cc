@@ -80,6 +80,7 @@ void AddObjects(const FinishedRun& run, ViewModel& model) {
       return;
     }
     model.camera = report->camera;
+    model.changes = std::move(report->changes).value_or(std::vector<ChangedObject>());
     for (ObjectResult& object : report->objects) {
       model.objects.push_back({std::move(object), {}, {}});
     }

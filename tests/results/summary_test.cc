@@ -104,11 +104,26 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
             (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity",
                                       "contradicted_landmarks", "loops", "sessions",
                                       "reprojection_px", "known_sizes"}));
-  EXPECT_EQ(Keys(json["provenance"]),
-            (std::vector<std::string>{
-                "program", "version", "git", "settings_hash", "preset", "preset_overrides", "seed",
-                "pipeline", "masks", "masks_format", "network", "mask_all", "mask_all_right",
-                "sequence", "dataset", "sequence_choices", "map", "interrupted", "input_failure"}));
+  EXPECT_EQ(Keys(json["provenance"]), (std::vector<std::string>{"program",
+                                                                "version",
+                                                                "git",
+                                                                "settings_hash",
+                                                                "preset",
+                                                                "preset_overrides",
+                                                                "seed",
+                                                                "pipeline",
+                                                                "masks",
+                                                                "masks_format",
+                                                                "network",
+                                                                "mask_all",
+                                                                "mask_all_right",
+                                                                "sequence",
+                                                                "dataset",
+                                                                "sequence_choices",
+                                                                "map",
+                                                                "loaded_map",
+                                                                "interrupted",
+                                                                "input_failure"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {

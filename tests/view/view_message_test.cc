@@ -65,6 +65,22 @@ TEST(ViewMessage, BytesThatAreNoTextAreReplaced) {
   EXPECT_EQ(json["set"]["objects"][0]["class"], "cup?");
 }
 
+TEST(ViewMessage, TellsWhatHasChanged) {
+  ViewModel model = MadeView(1);
+  ChangedObject gone{.change = ObjectChange::kGone, .label = "cup", .expected = 7, .found = 1};
+  gone.former = LocatedObject{ObjectId(4), {}};
+  gone.former->ellipsoid.world_from_object.translation = {1.0, 2.0, 3.0};
+  model.changes = {gone};
+  const Json changes = Json::parse(FormatViewMessage(model))["set"]["changes"];
+  const Json former = {{"id", 4}, {"centre", {1.0, 2.0, 3.0}}};
+  EXPECT_EQ(changes, Json::array({{{"change", "gone"},
+                                   {"class", "cup"},
+                                   {"former", former},
+                                   {"now", nullptr},
+                                   {"expected", 7},
+                                   {"found", 1}}}));
+}
+
 TEST(ViewMessage, LossesComeFromTheSummary) {
   ViewModel model = MadeView(2);
   model.summary["trajectory"]["losses"] = {
