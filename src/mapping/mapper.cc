@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "frame/wide_sensor.h"
 #include "map/correction.h"
 #include "map/islands.h"
 #include "mapping/contradicted_landmarks.h"
@@ -54,6 +55,7 @@ std::vector<ObjectId> MappedObjects(const Map& map) {
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
                Publish publish, std::shared_ptr<const Vocabulary> vocabulary)
     : sensor_(sensor),
+      wide_sensor_(WithWideErrors(sensor)),
       options_(options),
       object_options_(objects),
       publish_(std::move(publish)),
@@ -86,7 +88,7 @@ bool Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   {
     const ScopedTimer timer(times_, "map_insert");
     BeginSession();
-    keyframes = InsertInitialMap(map_, initial, sensor_, recent_);
+    keyframes = InsertInitialMap(map_, initial, SensorNow(), recent_);
     PublishSnapshot();
   }
   for (const KeyframeId keyframe : keyframes) {
@@ -99,11 +101,12 @@ bool Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
 }
 
 bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
+  wide_keyframes_ += has_wide_steps_ ? 1 : 0;
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
     BeginSession();
-    keyframe = InsertKeyframe(map_, request, sensor_, recent_, options_.landmark_rule);
+    keyframe = InsertKeyframe(map_, request, SensorNow(), recent_, options_.landmark_rule);
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
   }
@@ -164,12 +167,16 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
   newest_keyframe_ = keyframe;
   {
     const ScopedTimer timer(times_, "map_landmarks");
-    CullRecentLandmarks(map_, keyframe, sensor_, recent_);
+    if (has_wide_steps_) {
+      recent_.clear();
+    } else {
+      CullRecentLandmarks(map_, keyframe, sensor_, recent_);
+    }
     const std::vector<LandmarkId> created =
-        CreateLandmarks(map_, keyframe, sensor_, options_.landmark_rule);
+        CreateLandmarks(map_, keyframe, SensorNow(), options_.landmark_rule);
     recent_.insert(recent_.end(), created.begin(), created.end());
     if (!IsRequested(hurry)) {
-      FuseLandmarks(map_, keyframe, sensor_);
+      FuseLandmarks(map_, keyframe, SensorNow());
     }
     contradicted_landmarks_ += EraseContradictedLandmarks(map_, keyframe, sensor_, contradictions_);
   }
@@ -218,7 +225,7 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes),
                          ObjectsToAdjust(object_options_));
-    Apply(AdjustBundle(map_, sensor_, window, {.objects = object_options_.bundle}, hurry));
+    Apply(AdjustBundle(map_, SensorNow(), window, {.objects = object_options_.bundle}, hurry));
   }
   RecheckObjects(window.objects);
 }
@@ -235,7 +242,7 @@ void Mapper::SplitIslands(const Cancellation* cancellation) {
         left.keyframes().size() >= 2) {
       const ScopedTimer timer(times_, "global_bundle_adjustment");
       const BundleResult result =
-          AdjustIsland(left, island, sensor_, object_options_, cancellation).result;
+          AdjustIsland(left, island, SensorOfRun(), object_options_, cancellation).result;
       if (result.is_usable) {
         ApplyBundle(left, result, sensor_.levels);
       }
@@ -255,8 +262,8 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   IslandAdjustment adjustment;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    adjustment =
-        AdjustIsland(map_, MainIsland(map_), sensor_, object_options_, cancellation, on_progress);
+    adjustment = AdjustIsland(map_, MainIsland(map_), SensorOfRun(), object_options_, cancellation,
+                              on_progress);
     Apply(adjustment.result);
   }
   RecheckObjects(adjustment.objects);

@@ -48,6 +48,10 @@ class Mapper {
   // about objects until then; or no longer. May be called by any thread.
   void AwaitMasks(bool is_on) { awaits_masks_ = is_on; }
 
+  // From now on, images are far apart (WithWideErrors), so the next keyframes need not show a
+  // landmark again; or no longer. May be called by any thread.
+  void ExpectWideSteps(bool is_on) { has_wide_steps_ = is_on; }
+
   // The next five functions are for the end of a run (system/finish_run.h).
   // False for a map of earlier sessions to which no keyframe was added.
   bool HasChangedMap() const { return !session_; }
@@ -104,7 +108,14 @@ class Mapper {
   void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
 
+  // The sensor with the errors that suit the present steps, and those of most keyframes.
+  const Sensor& SensorNow() const { return has_wide_steps_ ? wide_sensor_ : sensor_; }
+  const Sensor& SensorOfRun() const {
+    return 2 * wide_keyframes_ > map_.keyframes().size() ? wide_sensor_ : sensor_;
+  }
+
   const Sensor& sensor_;
+  const Sensor wide_sensor_;
   MappingOptions options_;
   ObjectOptions object_options_;
   Publish publish_;
@@ -119,6 +130,8 @@ class Mapper {
   size_t contradicted_landmarks_ = 0;
   size_t sized_keyframes_ = 0;  // views of objects of known size when the scale was last measured
   std::atomic<bool> awaits_masks_ = false;
+  std::atomic<bool> has_wide_steps_ = false;
+  size_t wide_keyframes_ = 0;       // that came while images were far apart
   RequestMemory late_requests_;     // keyframes that were made of frames with late masks
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;

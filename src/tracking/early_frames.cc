@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "map/islands.h"
+#include "places/wide_matches.h"
 #include "tracking/confirmed_pose.h"
 #include "tracking/last_frame.h"
 #include "tracking/shutter_correction.h"
+#include "util/valid_ids.h"
 
 namespace hullslam {
 namespace {
@@ -121,6 +123,13 @@ std::optional<FoundFrame> TrackBack(const Map& map, const TrackingContext& conte
   return found ? std::optional(MakeFound(map, frame, std::move(found->tracking))) : std::nullopt;
 }
 
+// Whether the frame finds less than half of the landmarks of its reference keyframe. In a video all
+// frames that are lost near a keyframe find more, and need only a pose.
+bool ShowsNewPart(const Map& map, const LocalTracking& tracking) {
+  const std::vector<LandmarkId>& landmarks = map.keyframes().At(tracking.reference).landmarks;
+  return 2 * static_cast<size_t>(tracking.estimate.inliers) < IndicesOfValid(landmarks).size();
+}
+
 }  // namespace
 
 void EarlyFrames::Keep(std::shared_ptr<const Frame> frame, bool is_tracked) {
@@ -129,7 +138,32 @@ void EarlyFrames::Keep(std::shared_ptr<const Frame> frame, bool is_tracked) {
                                       [](const Kept& kept) { return kept.is_tracked; });
     frames_.erase(tracked != frames_.end() ? tracked : frames_.begin());
   }
-  frames_.push_back({std::move(frame), is_tracked});
+  frames_.push_back({.frame = std::move(frame), .is_tracked = is_tracked});
+}
+
+std::optional<KeyframeRequest> EarlyFrames::FindKeyframe(const Map& map,
+                                                         const TrackingContext& context) {
+  for (Kept& kept : frames_) {
+    if (kept.is_tracked || map.KeyframeOfFrame(kept.frame->id)) {
+      continue;
+    }
+    std::vector<KeyframeId> keyframes = KeyframesForWideMatches(map, *kept.frame);
+    if (keyframes == kept.compared) {
+      continue;
+    }
+    kept.compared = std::move(keyframes);
+    std::optional<ConfirmedPose> found =
+        FindConfirmedPose(*kept.frame, map, context, LastFrame(), kWideSources).found;
+    if (found && ShowsNewPart(map, found->tracking)) {
+      return KeyframeRequest{.frame = kept.frame,
+                             .pose = map.RelativeTo(found->tracking.reference,
+                                                    found->tracking.estimate.cam_from_world),
+                             .landmarks = std::move(found->tracking.estimate.landmarks),
+                             .sightings = {},
+                             .oldest_revision = 0};
+    }
+  }
+  return std::nullopt;
 }
 
 std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingContext& context,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/frame.h"
@@ -41,6 +42,11 @@ class EarlyFrames {
   // otherwise push out those without a pose. Then the oldest of the others are forgotten.
   void Keep(std::shared_ptr<const Frame> frame, bool is_tracked);
 
+  // Finds one of the frames without a pose that shows enough that the map lacks to become a
+  // keyframe. A frame that was not found is tried again when there are other keyframes to compare
+  // it with. Null if no frame is found.
+  std::optional<KeyframeRequest> FindKeyframe(const Map& map, const TrackingContext& context);
+
   // Finds the frames in the final map and forgets them. Each is sought at the keyframe that is
   // nearest in time. A frame that is not found there is tracked from the frame after it: the first
   // images of a car show the landmarks of the map far ahead, too small to be recognised, but hardly
@@ -55,6 +61,8 @@ class EarlyFrames {
   struct Kept {
     std::shared_ptr<const Frame> frame;
     bool is_tracked = false;
+    // The keyframes with which FindKeyframe has compared the frame last.
+    std::vector<KeyframeId> compared = {};
   };
   std::vector<Kept> frames_;  // in order of time
 };

@@ -40,6 +40,12 @@ PoseSource PoseByRelocalisation;
 // (object_relocalisation_source.cc).
 PoseSource PoseByObjects;
 
+// Keypoints are compared with all landmarks of the last keyframes and of those that look like the
+// frame, each keyframe by itself and all of an island together, wherever they are in the image. The
+// pose with most inliers is taken. Slow; for images that are taken far apart. The last frame is not
+// used (wide_match_source.cc).
+PoseSource PoseByWideMatches;
+
 // All sources, in the order in which they are asked.
 inline constexpr std::array<PoseSource*, 4> kPoseSources = {
     &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation, &PoseByObjects};
@@ -48,11 +54,15 @@ inline constexpr std::array<PoseSource*, 4> kPoseSources = {
 inline constexpr std::array<PoseSource*, 2> kRelocalisationSources = {&PoseByRelocalisation,
                                                                       &PoseByObjects};
 
+// The sources for a frame that none of the others found.
+inline constexpr std::array<PoseSource*, 1> kWideSources = {&PoseByWideMatches};
+
 // Whether the source begins at the last frame. The others may find another place or island, whose
 // poses do not fit exactly to those of the last frame.
 constexpr bool BeginsAtLastFrame(PoseSource* source) {
-  return std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
-         kRelocalisationSources.end();
+  return source != &PoseByWideMatches &&
+         std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
+             kRelocalisationSources.end();
 }
 
 }  // namespace hullslam

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "frame/wide_sensor.h"
 #include "map/islands.h"
 #include "tracking/image_overlap.h"
 
@@ -122,6 +123,7 @@ TrackingFailure WhyLost(const Frame& frame, const TrackingContext& context, cons
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
                  uint64_t seed)
     : sensor_(sensor),
+      wide_sensor_(WithWideErrors(sensor)),
       island_rules_(IslandRules::ForSensor(sensor.kind)),
       options_(options),
       object_options_(objects),
@@ -193,6 +195,15 @@ std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
   return early_.Localise(map, Context(), cancellation, on_progress);
 }
 
+std::optional<KeyframeRequest> Tracker::FindLostKeyframe(const Map& map) {
+  if (!has_had_wide_steps_ || is_localizing_only_) {
+    return std::nullopt;
+  }
+  object_index_.Follow(map, sensor_.camera);
+  is_wide_ = true;
+  return early_.FindKeyframe(map, Context());
+}
+
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
   if (last_.frame != nullptr) {
@@ -203,6 +214,9 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   PoseSearch search;
   std::optional<Found> found = FindCorrectedPose(frame, map, search);
+  if (!found) {
+    found = FindWidely(frame, map, search);
+  }
   if (!found) {
     const TrackingFailure reason = WhyLost(*frame, Context(), last_, search);
     return Lose(std::move(frame), map, reason);
@@ -225,9 +239,11 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  if (!is_localizing_only_ && NeedsKeyframe(*frame, map, tracking, mapper)) {
+  if (!is_localizing_only_ && (NeedsKeyframe(*frame, map, tracking, mapper) || found->is_wide)) {
     result.message = MakeRequest(frame, tracking, pose);
   }
+  has_had_wide_steps_ |= found->is_wide;
+  is_wide_ = found->is_wide || (is_wide_ && result.message);
   result.report = {.tracked = {.frame = frame->id,
                                .timestamp = frame->timestamp,
                                .state = TrackingState::kTracked,
@@ -266,12 +282,14 @@ std::optional<Tracker::Found> Tracker::FindCorrectedPose(
 std::optional<Tracker::Found> Tracker::FindCorrectedPose(
     const std::shared_ptr<const Frame>& as_read, const std::shared_ptr<const Frame>& tried,
     const Map& map, PoseSearch& search) const {
-  search = FindConfirmedPose(*tried, map, Context(), last_, kPoseSources);
+  // Between images that are far apart, a constant velocity predicts nothing.
+  const std::span<PoseSource* const> sources = std::span(kPoseSources).subspan(is_wide_ ? 1 : 0);
+  search = FindConfirmedPose(*tried, map, Context(), last_, sources);
   if (!search.found) {
     return std::nullopt;
   }
   // A frame that is found anew has nothing to do with the last velocity.
-  const bool continues = BeginsAtLastFrame(kPoseSources[search.found->source]);
+  const bool continues = BeginsAtLastFrame(sources[search.found->source]);
   if (!continues && tried != as_read) {
     return std::nullopt;
   }
@@ -282,6 +300,23 @@ std::optional<Tracker::Found> Tracker::FindCorrectedPose(
   found.corrected = CorrectShutter(as_read, tried, map, Context(), last, found.tracking);
   found.is_relocalised = !continues;
   found.motion = MotionSince(last, *as_read, found.tracking.estimate.cam_from_world);
+  return found;
+}
+
+// Finds the pose of a frame that is far from all that is known of the camera's path. Its landmarks
+// are seen from elsewhere, so errors of their depths show in the image.
+std::optional<Tracker::Found> Tracker::FindWidely(const std::shared_ptr<const Frame>& as_read,
+                                                  const Map& map, PoseSearch& search) const {
+  PoseSearch found_widely = FindConfirmedPose(*as_read, map, WideContext(), last_, kWideSources);
+  search.most_unconfirmed = std::max(search.most_unconfirmed, found_widely.most_unconfirmed);
+  if (!found_widely.found) {
+    return std::nullopt;
+  }
+  Found found;
+  found.tracking = std::move(found_widely.found->tracking);
+  found.corrected.frame = as_read;
+  found.is_relocalised = true;
+  found.is_wide = true;
   return found;
 }
 
@@ -334,6 +369,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   if (MayBeginIsland(*frame, map)) {
     MonocularInitialiser::Result initial = FindInitialMap(frame);
     if (initial.map) {
+      has_had_wide_steps_ = true;
       return BeginIsland(std::move(frame), std::move(*initial.map));
     }
   }

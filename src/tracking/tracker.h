@@ -57,16 +57,29 @@ class Tracker {
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
+  // To be called when all frames have been processed: a keyframe for the mapper, made of a frame
+  // that was lost and is found in the map as it is now. Null if there is none, and if no images
+  // were far apart. Is called again with the new map until there is none.
+  std::optional<KeyframeRequest> FindLostKeyframe(const Map& map);
+
   // To be called at the end of a run, with the final map. See EarlyFrames.
   std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map,
                                                 const Cancellation* cancellation = nullptr,
                                                 const ProgressCallback& on_progress = {});
 
+  // Whether images are far apart at the moment, so that errors are larger (WithWideErrors): from a
+  // frame that only kWideSources found to the next one that needs no keyframe.
+  bool HasWideSteps() const { return is_wide_; }
+
   const StageTimes& times() const { return times_; }
 
  private:
   TrackingContext Context() const {
-    return {sensor_, options_, object_options_, object_index_, seed_};
+    return is_wide_ ? WideContext()
+                    : TrackingContext{sensor_, options_, object_options_, object_index_, seed_};
+  }
+  TrackingContext WideContext() const {
+    return {wide_sensor_, options_, object_options_, object_index_, seed_, true};
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
@@ -79,12 +92,15 @@ class Tracker {
     LocalTracking tracking;
     std::optional<CameraMotion> motion;  // from the last frame, if the pose follows from it
     bool is_relocalised = false;
+    bool is_wide = false;  // found by kWideSources
   };
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
                                          const Map& map, PoseSearch& search) const;
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
                                          const std::shared_ptr<const Frame>& tried, const Map& map,
                                          PoseSearch& search) const;
+  std::optional<Found> FindWidely(const std::shared_ptr<const Frame>& as_read, const Map& map,
+                                  PoseSearch& search) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
   bool IsTiny(const Map& map) const;
@@ -96,6 +112,7 @@ class Tracker {
                               const RelativePose& pose);
 
   const Sensor& sensor_;
+  const Sensor wide_sensor_;
   const IslandRules island_rules_;
   const TrackingOptions options_;
   const ObjectOptions object_options_;
@@ -107,6 +124,8 @@ class Tracker {
   EarlyFrames early_;
 
   bool is_localizing_only_ = false;
+  bool is_wide_ = false;             // see HasWideSteps
+  bool has_had_wide_steps_ = false;  // whether they ever were, or the map was begun more than once
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
   int lost_frames_ = 0;               // since then

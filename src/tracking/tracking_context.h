@@ -19,6 +19,7 @@ struct TrackingContext {
   const ObjectOptions& objects;
   const ObjectIndex& object_index;  // index of the objects of the map
   uint64_t seed = 0;                // seed of the run
+  bool is_wide = false;             // `sensor` is WithWideErrors
 
   // The bounds of Mur-Artal and Tardos 2017 as shares of tracking.min_inliers. With its default of
   // 30, the motion model needs 20 matches, the reference keyframe 15 matches, a first pose 10

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,23 @@ TEST_F(EarlyFramesTest, GetPosesInTheFinalMap) {
           0.02);
     }
   }
+}
+
+// In the first one most of what the map has is outside the image; the second one shows nothing new.
+TEST_F(EarlyFramesTest, AFrameThatShowsANewPartBecomesAKeyframe) {
+  const Rigid3 aside =
+      Rigid3(ExpSo3({0.0, 0.65, 0.0}), Eigen::Vector3d::Zero()) * SyntheticWorld::CamFromWorld(14);
+  early_.Keep(world_.Observe(FrameId(14), aside).frame, false);
+  early_.Keep(world_.Observe(3).frame, false);
+  const SyntheticMap made = MakeSyntheticMap(world_, {2, 5, 12});
+  const std::optional<KeyframeRequest> request = early_.FindKeyframe(made.map, Context());
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->frame->id, FrameId(14));
+  const Rigid3 found = made.map.CamFromWorld(request->pose);
+  EXPECT_LT((found.translation - aside.translation).norm(), 0.02);
+  EXPECT_LT(AngularDistance(found.rotation, aside.rotation), 0.01);
+  EXPECT_FALSE(early_.FindKeyframe(made.map, Context())) << "there is nothing new to compare with";
+  EXPECT_EQ(early_.Localise(made.map, Context()).size(), 2u) << "they still get poses at the end";
 }
 
 TEST_F(EarlyFramesTest, AreForgottenOnceTheyAreLocalised) {
