@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "loop/drift_budget.h"
+#include "loop/island_join.h"
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
 #include "loop/return_to_place.h"
@@ -150,7 +151,8 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
                           loop.landmarks.size(), needed);
     return std::nullopt;
   }
-  if (is_join && !IsConfirmedByNeighbour(corrected, loop)) {
+  if (is_join && !IsConfirmedByNeighbour(corrected, sensor_, loop,
+                                         static_cast<size_t>(options_.min_landmarks))) {
     refusal = "no neighbour shows the landmarks there";
     return std::nullopt;
   }
@@ -170,21 +172,6 @@ std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const
              ? std::string()
              : fmt::format("it would move the camera by {:.2f} m after {:.1f} m",
                            CameraDistance(by_loop, tracked) / metre, travel.length / metre);
-}
-
-// Whether a second keyframe near the query, from which the similarity was not computed, shows
-// enough of the landmarks around the candidate. This check replaces the drift budget, which does
-// not exist between islands.
-bool LoopCloser::IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const {
-  const std::vector<LandmarkId> landmarks =
-      ObservedLandmarks(corrected, PlaceOf(corrected, loop.candidate));
-  const std::vector<KeyframeId> place = PlaceOf(corrected, loop.query);
-  return std::any_of(place.begin(), place.end(), [&](KeyframeId id) {
-    const Keyframe& neighbour = corrected.keyframes().At(id);
-    return id != loop.query &&
-           FindLandmarks(corrected, sensor_, *neighbour.frame, neighbour.cam_from_world, landmarks)
-                   .size() >= static_cast<size_t>(options_.min_landmarks);
-  });
 }
 
 // Half as many landmarks are enough if the objects at both ends agree, and twice as many are needed

@@ -52,7 +52,6 @@ class LoopCloser {
   // the query by itself.
   std::optional<MapCorrection> JoinReturn(const LoopQuery& query);
   std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
-  bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;
   size_t LandmarksNeeded(const LoopCandidate& candidate, const ObjectVotes& votes) const;
 
   const Sensor& sensor_;

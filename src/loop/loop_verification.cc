@@ -24,7 +24,7 @@ using KeypointPairs = std::vector<std::pair<uint32_t, uint32_t>>;
 // candidate's keypoints that show these landmarks. Only keypoints of the query that show a landmark
 // of their own are included.
 KeypointPairs PairsOf(const Keyframe& query, const Keyframe& candidate,
-                      const std::vector<FoundLandmark>& found) {
+                      std::span<const FoundLandmark> found) {
   KeypointPairs pairs;
   for (const auto& [keypoint, landmark] : found) {
     const auto seen = std::find(candidate.landmarks.begin(), candidate.landmarks.end(), landmark);
@@ -81,19 +81,25 @@ LoopVerdict Refuse(std::string reason) {
 LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,
                        bool fix_scale, uint64_t seed, const LoopOptions& options) {
   const Keyframe& of_query = map.keyframes().At(query);
+  return VerifyLoop(map, sensor, query, candidate,
+                    MatchLandmarksByWords(map, *of_query.frame, candidate, ShowsLandmark(of_query)),
+                    fix_scale, seed, options);
+}
+
+LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,
+                       std::span<const FoundLandmark> matches, bool fix_scale, uint64_t seed,
+                       const LoopOptions& options) {
+  const Keyframe& of_query = map.keyframes().At(query);
   const Keyframe& of_candidate = map.keyframes().At(candidate);
-  const auto matches_of = [&](const std::vector<FoundLandmark>& found) {
+  const auto matches_of = [&](std::span<const FoundLandmark> found) {
     return MakeMatches(map, sensor, of_query, of_candidate, PairsOf(of_query, of_candidate, found));
   };
   SimilarityOptions search{.fix_scale = fix_scale, .ransac = {}};
   search.ransac.seed = HashSeed(seed, of_query.frame->id.value, "loop");
   search.ransac.min_inliers = static_cast<size_t>(options.min_matches) / 2;
-  const Similarity found = EstimateSimilarity(
-      sensor.camera,
-      matches_of(MatchLandmarksByWords(map, *of_query.frame, candidate, ShowsLandmark(of_query))),
-      search);
+  const Similarity found = EstimateSimilarity(sensor.camera, matches_of(matches), search);
   if (!found.ok()) {
-    return Refuse("by words: " + found.failure);
+    return Refuse("by descriptors: " + found.failure);
   }
   const std::vector<FoundLandmark> guided =
       FindLandmarks(map, sensor, *of_query.frame, PoseAtCandidate(found.b_from_a, of_candidate),

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,11 @@ struct LoopVerdict {
 // vocabulary.
 LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,
                        bool fix_scale, uint64_t seed, const LoopOptions& options);
+
+// The same with other first matches: landmarks of the candidate and the keypoints of the query that
+// seem to show them. Keypoints without a landmark of their own are left out.
+LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,
+                       std::span<const FoundLandmark> matches, bool fix_scale, uint64_t seed,
+                       const LoopOptions& options);
 
 }  // namespace hullslam

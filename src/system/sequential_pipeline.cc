@@ -9,6 +9,7 @@
 #include "loop/whole_map_adjustment.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
+#include "system/grow_map.h"
 #include "system/loop_stages.h"
 #include "tracking/tracker.h"
 
@@ -47,6 +48,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();
     Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
+    mapper_.ExpectWideSteps(tracker_.HasWideSteps());
     if (result.message) {
       EditMap([&] { Process(*result.message); });
     }
@@ -56,7 +58,10 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
     if (!std::exchange(is_finished_, true)) {
-      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
+      EditMap([&] {
+        GrowMap(tracker_, mapper_, sensor_, options_, cancellation);
+        FinishMap(mapper_, cancellation, on_progress);
+      });
     }
   }
 

@@ -12,6 +12,7 @@
 #include "hullslam/util/check.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
+#include "system/grow_map.h"
 #include "system/loop_stages.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
@@ -39,7 +40,8 @@ constexpr int kMonocularMapperNiceness = 6;
 class ThreadedPipeline final : public Pipeline {
  public:
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
-      : options_(options),
+      : sensor_(sensor),
+        options_(options),
         is_monocular_(sensor.IsMonocular()),
         pace_(pace),
         tracker_(sensor, options.tracking, options.objects, options.seed),
@@ -77,6 +79,7 @@ class ThreadedPipeline final : public Pipeline {
     RethrowFailure();
     const MapperStatus status = pace_ == Pace::kWaitForMapper ? MapperStatus() : Status();
     Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), status);
+    mapper_.ExpectWideSteps(tracker_.HasWideSteps());
     if (result.message) {
       const bool is_initial = std::holds_alternative<InitialMap>(*result.message);
       if (is_initial || pace_ == Pace::kWaitForMapper) {
@@ -99,7 +102,10 @@ class ThreadedPipeline final : public Pipeline {
     Stop();
     RethrowFailure();
     if (is_first) {  // the mapper's thread has ended
-      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
+      EditMap([&] {
+        GrowMap(tracker_, mapper_, sensor_, options_, cancellation);
+        FinishMap(mapper_, cancellation, on_progress);
+      });
       RethrowFailure();
     }
   }
@@ -273,6 +279,7 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
+  const Sensor& sensor_;
   const SystemOptions options_;
   const bool is_monocular_;
   const Pace pace_;
