@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace hullslam {
 namespace {
@@ -23,8 +25,9 @@ PoseScaleCheck Look(double scale, int views, const std::vector<std::string>& lab
     }
     std::vector<Detection> detections;
     for (const std::string& label : labels) {
-      detections.push_back({.label = label});
-      detections.back().points = PackedPoints<3>(points);
+      Detection& detection = detections.emplace_back();
+      detection.label = label;
+      detection.points = PackedPoints<3>(points);
     }
     check.Add(detections, {rotation, pose.translation / scale});
   }
