@@ -345,6 +345,8 @@ class _tracking:
     """find a lost frame by keyframes that look like it (needs a vocabulary) (true or false (1 or 0); default true)"""
     remove_dynamic: bool
     """remove the keypoints on the masks of dynamic classes (true or false (1 or 0); default true)"""
+    wide_matches: bool
+    """with depth, a lost frame is also sought by matches without words or a prediction, as in recordings whose images are far apart; at the end, lost frames and parts of the map are joined in the same way (true or false (1 or 0); default true)"""
     wide_search: bool
     """search windows grow with the width of the image and, if needed, up to the expected motion; if not, they double once (true or false (1 or 0); default true)"""
 

@@ -49,6 +49,9 @@ bool JoinOnce(Mapper& mapper, const Sensor& sensor, const SystemOptions& options
 
 void GrowMap(Tracker& tracker, Mapper& mapper, const Sensor& sensor, const SystemOptions& options,
              const Cancellation* cancellation) {
+  if (!tracker.HasHadWideSteps()) {
+    return;
+  }
   mapper.ExpectWideSteps(true);
   do {
     AddLostKeyframes(tracker, mapper, cancellation);

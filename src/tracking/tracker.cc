@@ -196,7 +196,7 @@ std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
 }
 
 std::optional<KeyframeRequest> Tracker::FindLostKeyframe(const Map& map) {
-  if (!has_had_wide_steps_ || is_localizing_only_) {
+  if (!HasHadWideSteps()) {
     return std::nullopt;
   }
   object_index_.Follow(map, sensor_.camera);
@@ -214,7 +214,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   PoseSearch search;
   std::optional<Found> found = FindCorrectedPose(frame, map, search);
-  if (!found) {
+  if (!found && MayMatchWidely()) {
     found = FindWidely(frame, map, search);
   }
   if (!found) {

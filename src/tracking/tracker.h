@@ -71,6 +71,9 @@ class Tracker {
   // frame that only kWideSources found to the next one that needs no keyframe.
   bool HasWideSteps() const { return is_wide_; }
 
+  // Whether wide matches were needed for a frame, or the map was begun more than once.
+  bool HasHadWideSteps() const { return MayMatchWidely() && has_had_wide_steps_; }
+
   const StageTimes& times() const { return times_; }
 
  private:
@@ -80,6 +83,10 @@ class Tracker {
   }
   TrackingContext WideContext() const {
     return {wide_sensor_, options_, object_options_, object_index_, seed_, true};
+  }
+  // Without depth nothing could contradict a wrong pose.
+  bool MayMatchWidely() const {
+    return options_.wide_matches && !sensor_.IsMonocular() && !is_localizing_only_;
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);

@@ -10,6 +10,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "support/interrupted_desk.h"
 #include "support/run_program.h"
+#include "support/test_data.h"
 
 namespace hullslam {
 namespace {
@@ -75,6 +76,19 @@ TEST_F(RgbdIslands, OnesThatAreNeverJoinedAreSummarisedAndKeptIfAskedFor) {
   const fs::path island = folder_.path() / ("desk" + name + ".map");
   const nlohmann::json found = Run(desk, {"--load-map", island, "--localization"}, 1);
   EXPECT_GE(found["trajectory"]["tracked"], 25);
+}
+
+// 82 keyframes of a phone, 0.1 to 0.5 m and up to 40 degrees apart. Each part of the map that
+// begins where the camera is lost is joined, and lost frames are found at the end.
+TEST_F(RgbdIslands, KeyframesOfAPhoneMakeOneMap) {
+  const auto data = FindTestData("iphone_lidar_82");
+  if (!data) {
+    GTEST_SKIP() << "the keyframes of a phone are not on this machine";
+  }
+  const ProgramResult result = RunProgram("rgbd_tum", {*data, "--output", output_, "--quiet"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const auto summary = nlohmann::json::parse(ReadFile(output_ / "summary.json"));
+  EXPECT_GE(summary["trajectory"]["tracked"], 78);
 }
 
 }  // namespace

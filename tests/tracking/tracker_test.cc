@@ -984,6 +984,17 @@ TEST_F(RelocalisingTracker, IsFoundElsewhereWithoutWordsByAllDescriptors) {
   EXPECT_FALSE(tracker_.HasWideSteps());
 }
 
+TEST_F(RelocalisingTracker, StaysLostElsewhereWithoutWordsIfItMayNotMatchWidely) {
+  TrackingOptions options;
+  options.wide_matches = false;
+  Tracker tracker(world_.sensor(), options, ObjectOptions(), 1);
+  tracker.Process(Look(0, 0.0), nullptr, kIdle);
+  const auto frame = Look(1010, 0.45);
+  frame->words.clear();
+  EXPECT_EQ(tracker.Process(frame, map_, kIdle).report.tracked.state, TrackingState::kLost);
+  EXPECT_FALSE(tracker.HasHadWideSteps());
+}
+
 // Three times as many landmarks are needed where the place may only look like another one.
 TEST_F(RelocalisingTracker, StaysLostWithoutWordsIfItFindsFewLandmarks) {
   LoseTrack();

@@ -29,6 +29,10 @@ struct TrackingOptions {
   // Whether the windows in which landmarks are searched grow with the width of the image and, if
   // needed, up to the motion that is expected. Otherwise they double once if needed.
   bool wide_search = true;
+  // Whether a camera with depth that is lost is also sought by matches without words or a
+  // prediction, as in recordings whose images are far apart; at the end, lost frames become
+  // keyframes, and parts of the map are joined in the same way. Not while only localising.
+  bool wide_matches = true;
   // Whether a camera that stays lost begins a new island. Otherwise only one that is lost in a map
   // of at most five keyframes does.
   bool begin_islands = true;
