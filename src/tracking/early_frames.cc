@@ -67,7 +67,8 @@ FoundFrame MakeFound(const Map& map, const std::shared_ptr<const Frame>& frame,
 }
 
 // The frame if it is a keyframe of the map, perhaps a culled one.
-std::optional<FoundFrame> FindKeyframe(const Map& map, const std::shared_ptr<const Frame>& frame) {
+std::optional<FoundFrame> PoseOfKeyframe(const Map& map,
+                                         const std::shared_ptr<const Frame>& frame) {
   const std::optional<KeyframeId> id = map.KeyframeOfFrame(frame->id);
   if (!id || !IslandOf(map, *id).IsValid()) {
     return std::nullopt;
@@ -173,7 +174,7 @@ std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingCo
   LastFrame before;  // the last frame before the current one that was found
   for (size_t i = 0; i < frames_.size() && !IsRequested(cancellation); ++i) {
     const std::shared_ptr<const Frame>& frame = frames_[i].frame;
-    found[i] = FindKeyframe(map, frame);
+    found[i] = PoseOfKeyframe(map, frame);
     if (!found[i]) {
       found[i] = FindFrame(map, context, frame, before);
     }
