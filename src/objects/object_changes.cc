@@ -226,8 +226,7 @@ class Comparison {
       return false;
     }
     const int absent = looks.replaced + CountBehind(looks, SurfaceOf(present));
-    const int measured = looks.replaced + static_cast<int>(looks.missed.size());
-    return absent >= limits.min_keyframes && 2 * absent >= measured;
+    return 2 * absent >= looks.expected - looks.found;
   }
 
   Looks Look(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object) const {

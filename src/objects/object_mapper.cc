@@ -76,6 +76,21 @@ RefinedStart RefineBest(std::span<const Ellipsoid> starts, const Sensor& sensor,
   return best;
 }
 
+// The reason not to map a candidate with this shape; nothing if there is none.
+std::optional<Objection> ObjectionToStart(const Map& map, const Sensor& sensor, ObjectId id,
+                                          std::span<const ResolvedObservation> observations,
+                                          const ObjectOptions& options) {
+  if (auto objection =
+          FindObjection(map.objects().At(id).ellipsoid, sensor, observations, options.validity)) {
+    return objection;
+  }
+  if (const auto whole = FindWhole(map, sensor, id)) {
+    return Objection{ObjectRejection::kPart,
+                     fmt::format("near object {} but never seen together with it", whole->value)};
+  }
+  return std::nullopt;
+}
+
 // The object that is kept takes the shape of the duplicate if that has more observations.
 void ReplaceDuplicate(Map& map, ObjectId duplicate, ObjectId kept) {
   const ObjectLandmark before = map.objects().At(duplicate);
@@ -177,7 +192,7 @@ Objection ObjectMapper::FewKeyframes(const ObjectLandmark& object) const {
                       NeededKeyframes(object))};
 }
 
-void ObjectMapper::Update(Map& map, ObjectId id) {
+void ObjectMapper::Update(Map& map, ObjectId id, Copies copies) {
   changed_.push_back(id);
   const ObjectLandmark& object = map.objects().At(id);
   if (object.observations.size() < NeededKeyframes(object)) {
@@ -194,12 +209,13 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
   if (object.state == ObjectState::kMapped) {
     Refine(map, id, observations);
   } else {
-    Start(map, id, observations);
+    Start(map, id, observations, copies);
   }
 }
 
 // Computes the shape of a candidate: refines several starts and takes the best result.
-void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations) {
+void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations,
+                         Copies copies) {
   const bool has_depth = HasDepth(observations);
   const StartSpheres spheres =
       has_depth ? StartSpheres{} : FindStartSpheres(sensor_.camera, observations, options_.start);
@@ -240,19 +256,14 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ResolvedObservat
   object.has_shape = true;
   object.ellipsoid = best.refinement.ellipsoid;
   object.start = best.start;
-  if (const auto doubled = FindDoubled(map, sensor_, id, options_.fusion)) {
+  const auto doubled =
+      copies == Copies::kFuse ? FindDoubled(map, sensor_, id, options_.fusion) : std::nullopt;
+  if (doubled) {
     Fuse(map, id, *doubled);
     return;
   }
-  if (const auto objection =
-          FindObjection(object.ellipsoid, sensor_, observations, options_.validity)) {
+  if (const auto objection = ObjectionToStart(map, sensor_, id, observations, options_)) {
     Reject(map, id, *objection);
-    return;
-  }
-  if (const auto whole = FindWhole(map, sensor_, id)) {
-    Reject(map, id,
-           {ObjectRejection::kPart,
-            fmt::format("near object {} but never seen together with it", whole->value)});
     return;
   }
   object.state = ObjectState::kMapped;
@@ -341,7 +352,7 @@ bool ObjectMapper::SplitOff(Map& map, ObjectId object, const ObjectLandmark& for
     map.RemoveObservation(object, observation.keyframe);
     map.AddObservation(other, observation.keyframe, observation.detection);
   }
-  Update(map, other);
+  Update(map, other, Copies::kKeep);
   return true;
 }
 

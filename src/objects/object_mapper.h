@@ -54,8 +54,10 @@ class ObjectMapper {
  private:
   void Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe);
   void CountVisible(Map& map, const ObjectIndex& index, KeyframeId keyframe) const;
-  void Update(Map& map, ObjectId id);
-  void Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations);
+  enum class Copies { kFuse, kKeep };  // of mapped objects
+  void Update(Map& map, ObjectId id, Copies copies = Copies::kFuse);
+  void Start(Map& map, ObjectId id, std::span<const ResolvedObservation> observations,
+             Copies copies);
   void Refine(Map& map, ObjectId id, std::span<const ResolvedObservation> observations);
   void Accept(Map& map, ObjectId id, std::span<const ResolvedObservation> observations) const;
   size_t NeededKeyframes(const ObjectLandmark& object) const;
