@@ -18,8 +18,8 @@ namespace {
 // A ring of 30 keyframes; the last ones, which see what the first ones saw, are an island.
 class WideIslandJoin : public testing::Test {
  protected:
-  RingMap Split(uint32_t first, bool has_vocabulary = true) const {
-    RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3(), .has_vocabulary = has_vocabulary});
+  RingMap Split(uint32_t first) const {
+    RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
     SplitRing(made, first, Sim3(Rigid3(ExpSo3({0.3, 1.0, 0.2}), {1.0, -2.0, 0.5})));
     return made;
   }
@@ -31,16 +31,14 @@ class WideIslandJoin : public testing::Test {
 };
 
 TEST_F(WideIslandJoin, MovesTheIslandToItsPlace) {
-  for (const bool has_vocabulary : {true, false}) {
-    RingMap made = Split(20, has_vocabulary);
-    const std::optional<MapCorrection> join = Find(made, 29);
-    ASSERT_TRUE(join) << has_vocabulary;
-    ASSERT_TRUE(ApplyCorrection(made.map, *join, SharedRing().sensor().levels).is_applied);
-    EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
-    EXPECT_EQ(Islands(made.map).size(), 1u);
-    for (uint32_t i = 20; i < 30; ++i) {
-      EXPECT_LT(PoseError(made, made.map, KeyframeId(i)), 0.05) << i;
-    }
+  RingMap made = Split(20);
+  const std::optional<MapCorrection> join = Find(made, 29);
+  ASSERT_TRUE(join);
+  ASSERT_TRUE(ApplyCorrection(made.map, *join, SharedRing().sensor().levels).is_applied);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  EXPECT_EQ(Islands(made.map).size(), 1u);
+  for (uint32_t i = 20; i < 30; ++i) {
+    EXPECT_LT(PoseError(made, made.map, KeyframeId(i)), 0.05) << i;
   }
 }
 
