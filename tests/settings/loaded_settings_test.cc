@@ -12,12 +12,14 @@
 namespace hullslam {
 namespace {
 
-constexpr const char* kCameraOfFile = "Camera.fx: 500\nCamera.fy: 500\nCamera.cx: 320\nCamera.cy: 240\n";
+constexpr const char* kCameraOfFile =
+    "Camera.fx: 500\nCamera.fy: 500\nCamera.cx: 320\nCamera.cy: 240\n";
 
 TEST(LoadSettings, OverridesWinOverTheFileAndThePreset) {
   const TemporaryFolder folder;
   const auto preset = folder.Write("mine.yaml", "objects.pose.sigma: 3\nloop.min_matches: 41\n");
-  const auto file = folder.Write("camera.yaml", std::string(kCameraOfFile) + "objects.pose.sigma: 4\n");
+  const auto file =
+      folder.Write("camera.yaml", std::string(kCameraOfFile) + "objects.pose.sigma: 4\n");
   const std::vector<std::string> overrides = {"Camera.fx=400"};
   const LoadedSettings settings = LoadSettings(file, preset.string(), overrides);
   EXPECT_EQ(settings.options.camera.fx, 400.0);
