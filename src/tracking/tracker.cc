@@ -214,7 +214,8 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   PoseSearch search;
   std::optional<Found> found = FindCorrectedPose(frame, map, search);
-  if (!found && MayMatchWidely()) {
+  // A new session is found in its map by words or objects only.
+  if (!found && MayMatchWidely() && last_.frame != nullptr) {
     found = FindWidely(frame, map, search);
   }
   if (!found) {
