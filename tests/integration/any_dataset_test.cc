@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 12;
-constexpr double kBaseline = 0.12;  // m
+constexpr int kPairs = 12;
+constexpr double kBetweenCameras = 0.12;  // m
 
 // The tools that read every data set, with the same room in several of them. The masks show a part
 // of a wall.
@@ -32,7 +32,7 @@ class AnyDataset : public MonoProgram {
         fmt::format("Camera.fx: {}\nCamera.fy: {}\nCamera.cx: {}\nCamera.cy: {}\nCamera.width: {}\n"
                     "Camera.height: {}\nCamera.fps: 10\nCamera.bf: {}\n",
                     camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height,
-                    kBaseline * camera.fx));
+                    kBetweenCameras * camera.fx));
   }
 
   std::string WriteMasks(const std::vector<std::string>& stems) const {
@@ -45,7 +45,7 @@ class AnyDataset : public MonoProgram {
   // The stems "000000" to "000011".
   static std::vector<std::string> Numbers() {
     std::vector<std::string> stems;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kPairs; ++i) {
       stems.push_back(fmt::format("{:06}", i));
     }
     return stems;
@@ -83,7 +83,7 @@ class AnyDataset : public MonoProgram {
 };
 
 TEST_F(AnyDataset, PairsAreReadByAllTools) {
-  room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  room_.WritePairs(path_, "left", "right", kPairs, kBetweenCameras);
   const std::string truth = path_ + "/groundtruth.txt";
   const ProgramResult result = Run({path_, "--settings", settings_});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -93,7 +93,7 @@ TEST_F(AnyDataset, PairsAreReadByAllTools) {
 }
 
 TEST_F(AnyDataset, AFolderOfImagesIsReadByAllTools) {
-  room_.WritePairs(path_, "left", "right", kFrames, kBaseline);
+  room_.WritePairs(path_, "left", "right", kPairs, kBetweenCameras);
   const std::string images = path_ + "/left";
   const std::string truth = path_ + "/groundtruth.txt";
   const Arguments more = {"--settings", settings_, "--fps", "10"};
@@ -115,7 +115,7 @@ TEST_F(AnyDataset, ARecordingIsReadByAllTools) {
        MadeCameraInfo(MessageCoding::kCdr, width, height, "plumb_bob", {}, camera.fx, 0.0)}};
   std::vector<std::string> stems;
   std::string truth;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kPairs; ++i) {
     const MadeRoom::Images images = room_.Render(i);
     const uint64_t time = 1'000'000'000 + 100'000'000 * static_cast<uint64_t>(i);
     cv::Mat depth;
