@@ -117,6 +117,12 @@ int CountBehind(const Looks& looks, const UsualSurface& usual) {
       }));
 }
 
+// An object whose location is looked at.
+struct Sought {
+  ObjectId object;          // in the map; invalid if it was removed
+  bool was_mapped = false;  // in an earlier session
+};
+
 // The difference of the sizes of two objects: the larger one of the ratios of their two longest
 // half axes. The shortest half axis of flat things is not known precisely.
 double SizeRatio(Eigen::Vector3d a, Eigen::Vector3d b) {
@@ -164,8 +170,8 @@ class Comparison {
     ObjectLandmark sought = former;
     sought.ellipsoid = InMap(map_, former_, former);
     changed.former = {id, sought.ellipsoid};
-    const Looks later = Look(later_, now, sought);
-    const bool is_gone = HasLeft(later, Look(earlier_, now, sought));
+    const Looks later = Look(later_, {now, true}, sought);
+    const bool is_gone = HasLeft(later, Look(earlier_, {now, true}, sought));
     changed.expected = later.expected;
     changed.found = later.found;
     changed.change = is_gone           ? ObjectChange::kGone
@@ -206,11 +212,11 @@ class Comparison {
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
     ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
-    const Looks earlier = Look(earlier_, id, object);
+    const Looks earlier = Look(earlier_, {id, false}, object);
     changed.expected = earlier.expected;
     changed.found = earlier.found;
-    changed.change =
-        HasLeft(earlier, Look(later_, id, object)) ? ObjectChange::kNew : ObjectChange::kFirstSeen;
+    changed.change = HasLeft(earlier, Look(later_, {id, false}, object)) ? ObjectChange::kNew
+                                                                         : ObjectChange::kFirstSeen;
     return changed;
   }
 
@@ -229,22 +235,23 @@ class Comparison {
     return 2 * absent >= looks.expected - looks.found;
   }
 
-  Looks Look(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object) const {
+  Looks Look(std::span<const KeyframeId> keyframes, const Sought& sought,
+             ObjectLandmark object) const {
     std::erase_if(object.observations, [&](const ObjectObservation& observation) {
       return !map_.keyframes().Contains(observation.keyframe);
     });
     Looks looks;
     for (const KeyframeId keyframe : keyframes) {
-      AddLook(keyframe, id, object, looks);
+      AddLook(keyframe, sought, object, looks);
     }
     return looks;
   }
 
-  void AddLook(KeyframeId id, ObjectId object_id, const ObjectLandmark& object,
+  void AddLook(KeyframeId id, const Sought& sought, const ObjectLandmark& object,
                Looks& looks) const {
     const Keyframe& keyframe = map_.keyframes().At(id);
-    const bool is_found = Shows(keyframe, object_id, object);
-    const bool is_replaced = !is_found && IsReplaced(keyframe, object_id, object);
+    const bool is_found = Shows(keyframe, sought.object, object);
+    const bool is_replaced = !is_found && IsReplaced(keyframe, sought, object);
     if (!is_found && !is_replaced && !IsSeenWithout(id, object)) {
       return;
     }
@@ -271,16 +278,18 @@ class Comparison {
   }
 
   // Whether the keyframe shows another thing at the location of the object, or in front of it. The
-  // other thing is a new object of another class, or it was associated with the object itself.
-  bool IsReplaced(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
+  // other thing is an object of another class that was only there in the other sessions, or it was
+  // associated with the object itself.
+  bool IsReplaced(const Keyframe& keyframe, const Sought& sought,
+                  const ObjectLandmark& object) const {
     for (size_t i = 0; i < keyframe.objects.size(); ++i) {
       const ObjectId shown = keyframe.objects[i];
       if (!shown.IsValid() || MayBe(object, keyframe.frame->detections[i].label)) {
         continue;
       }
       const ObjectLandmark& other = map_.objects().At(shown);
-      if (shown == id ||
-          (other.state == ObjectState::kMapped && !WasMapped(shown) &&
+      if (shown == sought.object ||
+          (other.state == ObjectState::kMapped && WasMapped(shown) != sought.was_mapped &&
            other.ellipsoid.RadialDistance(object.ellipsoid.world_from_object.translation) < 0.0)) {
         return true;
       }

@@ -17,9 +17,9 @@ namespace hullslam {
 enum class ObjectChange {
   kSeenAgain,
   kMoved,      // it is gone, and there is a new object of its class and size elsewhere
-  kGone,       // it should have been visible, but was not found, or is no longer in the map
-  kNew,        // earlier sessions should have seen it, but did not
-  kNotSeen,    // too few keyframes of the session should show its location
+  kGone,       // it should be visible, but what is behind it is seen instead
+  kNew,        // earlier sessions saw that it was not there
+  kNotSeen,    // no keyframe of the session shows it, but this does not prove that it has left
   kFirstSeen,  // mapped for the first time, and not known to be new
 };
 
@@ -39,8 +39,7 @@ struct LocatedObject {
 struct ChangedObject {
   ObjectChange change = ObjectChange::kSeenAgain;
   std::string label;
-  // The object after the session; absent if it is gone, or if it was not seen and is no longer in
-  // the map.
+  // The object after the session; absent if it is gone or no longer in the map.
   std::optional<LocatedObject> now = std::nullopt;
   // The object before the session, with its id in the former map; absent if it is new or first
   // seen.
