@@ -6,15 +6,17 @@
 
 namespace hullslam {
 
+constexpr double kSameStamp = 1e-6;  // seconds: stamps nearer than this are the same
+
 std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
                                       double max_gap) {
   const auto after = std::lower_bound(
-      trajectory.begin(), trajectory.end(), timestamp,
+      trajectory.begin(), trajectory.end(), timestamp - kSameStamp,
       [](const StampedPose& pose, double stamp) { return pose.timestamp < stamp; });
   if (after == trajectory.end()) {
     return std::nullopt;
   }
-  if (after->timestamp == timestamp) {
+  if (after->timestamp < timestamp + kSameStamp) {
     return after->world_from_cam;
   }
   if (after == trajectory.begin()) {

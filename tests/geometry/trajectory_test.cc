@@ -37,5 +37,18 @@ TEST(InterpolatePose, IsNothingOutsideTheTrajectoryAndInGaps) {
   EXPECT_FALSE(InterpolatePose({}, 1.0, 0.5));
 }
 
+// A file holds "0.300000" where a program computes 3 * 0.1, which is a little more.
+TEST(InterpolatePose, TakesThePoseOfAStampThatIsRoundedInAnotherWay) {
+  Trajectory trajectory;
+  for (int i = 0; i < 4; ++i) {
+    trajectory.push_back({0.1 * i, Rigid3(Eigen::Quaterniond::Identity(), {1.0 * i, 0.0, 0.0})});
+  }
+  for (const double stamp : {0.3, 0.3 - 9e-7, 0.3 + 9e-7}) {
+    const std::optional<Rigid3> pose = InterpolatePose(trajectory, stamp, 0.01);
+    ASSERT_TRUE(pose) << stamp;
+    EXPECT_EQ(pose->translation.x(), 3.0);
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -310,7 +310,7 @@ TEST_F(ObjectChanges, AThingAtThePlaceOfAnotherBecomesAnObjectOfItsOwn) {
   ASSERT_GT(map_.objects().At(cup).votes.count("orange"), 0U);  // it was taken for the cup
   EXPECT_TRUE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
   EXPECT_EQ(map_.objects().At(cup).votes.count("orange"), 0U);
-  EXPECT_EQ(ChangeOf("orange"), ObjectChange::kFirstSeen);  // the cup hid what was there
+  EXPECT_EQ(ChangeOf("orange"), ObjectChange::kNew);
   EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
   EXPECT_EQ(Changes()[0].expected, 10);
   EXPECT_FALSE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
