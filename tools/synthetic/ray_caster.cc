@@ -4,7 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <cstring>
+#include <deque>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -26,23 +26,101 @@ struct Mover {
   SceneHandle scene;
 };
 
-// Copies the triangles of the part, in the frame of `frame_from_part`, to the scene under `id`.
-void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& frame_from_part,
-            unsigned id) {
-  const TriangleMesh mesh = Tessellate(part.shape);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               mesh.vertices.size()));
-  auto* triangles = static_cast<uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(uint32_t), mesh.triangles.size()));
-  Check(vertices != nullptr && triangles != nullptr, "Embree has no memory for a mesh");
-  for (size_t i = 0; i < mesh.vertices.size(); ++i) {
-    Eigen::Map<Eigen::Vector3f>(vertices + 3 * i) =
-        (frame_from_part * mesh.vertices[i]).cast<float>();
+// Embree leaves out boxes with approximate reciprocals. So the boxes around triangles are larger by
+// this, m, which is far more than its rounding errors in scenes of 300 m.
+constexpr double kMargin = 2e-4;
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+
+Corners CornersOf(const TriangleMesh& mesh, unsigned triangle) {
+  const std::array<uint32_t, 3>& corners = mesh.triangles[triangle];
+  return {mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
+}
+
+void GetBounds(const RTCBoundsFunctionArguments* args) {
+  const Corners corners =
+      CornersOf(*static_cast<const TriangleMesh*>(args->geometryUserPtr), args->primID);
+  const Eigen::Vector3f lower =
+      (corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - kMargin)
+          .matrix()
+          .cast<float>();
+  const Eigen::Vector3f upper =
+      (corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + kMargin)
+          .matrix()
+          .cast<float>();
+  *args->bounds_o = {lower.x(), lower.y(), lower.z(), 0.0F, upper.x(), upper.y(), upper.z(), 0.0F};
+}
+
+// A triangle as rays from one origin see it.
+struct SeenTriangle {
+  SeenTriangle(const Corners& corners, const Eigen::Vector3d& origin) {
+    const Corners at = {corners[0] - origin, corners[1] - origin, corners[2] - origin};
+    for (size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d& next = at[(i + 1) % 3];
+      edges[i] = (at[i] - next).cross(at[i] + next);
+    }
+    normal = (at[1] - at[0]).cross(at[2] - at[0]);
+    offset = normal.dot(at[0]);
   }
-  std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(uint32_t));
+
+  // The distance along the ray in units of the length of `direction`, infinity if the ray misses
+  // the triangle. A ray that passes an edge between two triangles is on opposite sides of it for
+  // the two, without rounding errors, so it never passes between them (Plücker coordinates).
+  double DistanceAlong(const Eigen::Vector3d& direction) const {
+    const double a = edges[0].dot(direction);
+    const double b = edges[1].dot(direction);
+    const double c = edges[2].dot(direction);
+    const double slope = normal.dot(direction);
+    const bool inside = (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
+    return inside && slope != 0.0 ? offset / slope : std::numeric_limits<double>::infinity();
+  }
+
+  std::array<Eigen::Vector3d, 3> edges;  // normals of the planes through the origin and an edge
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+};
+
+// Keeps the triangle for those rays of the packet which hit it first. Of two that are hit at the
+// same distance the part with the lower index counts, so the order of the calls does not matter.
+void Intersect(const RTCIntersectFunctionNArguments* args) {
+  RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+  const Eigen::Vector3f origin(RTCRayN_org_x(ray, args->N, 0), RTCRayN_org_y(ray, args->N, 0),
+                               RTCRayN_org_z(ray, args->N, 0));  // that of all rays
+  const SeenTriangle triangle(
+      CornersOf(*static_cast<const TriangleMesh*>(args->geometryUserPtr), args->primID),
+      origin.cast<double>());
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) {
+      continue;
+    }
+    const Eigen::Vector3f direction(RTCRayN_dir_x(ray, args->N, i), RTCRayN_dir_y(ray, args->N, i),
+                                    RTCRayN_dir_z(ray, args->N, i));
+    const auto distance = static_cast<float>(triangle.DistanceAlong(direction.cast<double>()));
+    float& nearest = RTCRayN_tfar(ray, args->N, i);
+    unsigned& part = RTCHitN_geomID(hit, args->N, i);
+    if (distance >= 0.0F && (distance < nearest || (distance == nearest && args->geomID < part))) {
+      nearest = distance;
+      part = args->geomID;
+    }
+  }
+}
+
+// Puts the triangles of the part, in the frame of `frame_from_part`, into the scene under `id`.
+// Embree finds the triangles near a ray; whether and where the ray hits them is computed here,
+// because the results of Embree differ in their last digits between kinds of processors, and images
+// with them. `mesh` must live as long as the scene.
+void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& frame_from_part,
+            unsigned id, TriangleMesh& mesh) {
+  mesh = Tessellate(part.shape);
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex = frame_from_part * vertex;
+  }
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangles.size()));
+  rtcSetGeometryUserData(geometry, &mesh);
+  rtcSetGeometryBoundsFunction(geometry, GetBounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, Intersect);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
@@ -50,7 +128,6 @@ void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& fr
 
 SceneHandle NewScene(RTCDevice device) {
   SceneHandle scene(rtcNewScene(device));
-  // In robust mode no ray passes between neighbouring triangles.
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
@@ -78,9 +155,8 @@ void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
     query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  RTCIntersectContext context{};
+  RTCIntersectContext context{};  // not for coherent rays: these miss boxes along an axis
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(valid.data(), scene, &context, &query);
   for (size_t i = 0; i < RayPacket::kSize; ++i) {
     if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
@@ -93,22 +169,21 @@ void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
 }  // namespace
 
 struct RayCaster::Device {
+  std::deque<TriangleMesh> meshes;  // one per part
   DeviceHandle device;
   SceneHandle still;
   std::vector<Mover> movers;
 };
 
-RayCaster::RayCaster(const Scene& scene) : device_(std::make_unique<Device>()) {
-  // One thread only, because the acceleration structure must not depend on the timing of several
-  // threads. One set of instructions, because with others distances differ in their last digits,
-  // and images would depend on the kind of processor. Every x86 processor of 64 bits has this one.
-  device_->device.reset(rtcNewDevice("threads=1,isa=sse2"));
+RayCaster::RayCaster(const Scene& scene, const std::string& embree_options)
+    : device_(std::make_unique<Device>()) {
+  device_->device.reset(rtcNewDevice(embree_options.c_str()));
   Check(device_->device != nullptr, "Embree has no device on this machine");
   RTCDevice device = device_->device.get();
   device_->still = NewScene(device);
   for (const Part& part : scene.background) {
     Attach(device, device_->still.get(), part, part.owner_from_part,
-           static_cast<unsigned>(parts_.size()));
+           static_cast<unsigned>(parts_.size()), device_->meshes.emplace_back());
     parts_.push_back({&part, -1});
   }
   for (size_t i = 0; i < scene.objects.size(); ++i) {
@@ -121,7 +196,7 @@ RayCaster::RayCaster(const Scene& scene) : device_(std::make_unique<Device>()) {
     const Rigid3 frame_from_object = object.IsDynamic() ? Rigid3() : object.world_from_object;
     for (const Part& part : object.parts) {
       Attach(device, target, part, frame_from_object * part.owner_from_part,
-             static_cast<unsigned>(parts_.size()));
+             static_cast<unsigned>(parts_.size()), device_->meshes.emplace_back());
       parts_.push_back({&part, static_cast<int>(i)});
     }
     if (object.IsDynamic()) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
@@ -29,11 +30,12 @@ struct RayPacket {
 // Finds the first hits of rays with a scene, by Embree. All static parts share one acceleration
 // structure. Each moving object has its own one in its own frame, and rays are transformed to this
 // frame, so that several threads can cast frames of different times at once. The same rays give
-// bit-identical results.
+// bit-identical results on all kinds of processors.
 class RayCaster {
  public:
-  // Keeps a reference to `scene`.
-  explicit RayCaster(const Scene& scene);
+  // Keeps a reference to `scene`. `embree_options` are those of rtcNewDevice(); they change nothing
+  // but the speed.
+  explicit RayCaster(const Scene& scene, const std::string& embree_options = "threads=1");
   ~RayCaster();
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;

@@ -18,8 +18,8 @@ using Trajectory = std::vector<StampedPose>;
 
 // The pose at `timestamp` (seconds), interpolated between its two neighbours in the trajectory: the
 // position on a straight line, the rotation at constant angular velocity. Returns nothing before
-// the first pose, after the last pose, or in a gap longer than `max_gap` seconds. Stamps that differ
-// by less than a microsecond, as files round them, are the same.
+// the first pose, after the last pose, or in a gap longer than `max_gap` seconds. Stamps that
+// differ by less than a microsecond, as files round them, are the same.
 std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
                                       double max_gap);
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "synthetic/hash_noise.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
@@ -95,6 +98,38 @@ TEST(RayCaster, MatchesHandComputedDistances) {
   cast(2.0);
   EXPECT_NEAR(packet.distance[2], 1.0F, 1e-5F);  // the side of the walker at y = -1
   EXPECT_EQ(caster.parts()[static_cast<size_t>(packet.part[2])].object, 3);
+}
+
+// Rays along edges between the table and what stands on it hit two parts at the same distance.
+TEST(RayCaster, HitsAreTheSameOnAllKindsOfProcessors) {
+  const Scene scene = TestScene();
+  const std::vector<Rigid3> poses = Poses(scene, 0.5);
+  const RayCaster plain(scene, "threads=1,isa=sse2");
+  const std::array<RayCaster, 3> others = {RayCaster(scene, "threads=1,isa=sse4.2"),
+                                           RayCaster(scene, "threads=1,isa=avx2"),
+                                           RayCaster(scene, "threads=1")};
+  const Vector3f eye(0.1F, 0.2F, 1.2F);
+  const int side = 400;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; j += RayPacket::kSize) {
+      RayPacket packet;
+      for (int k = 0; k < RayPacket::kSize; ++k) {
+        const Vector3d angles(M_PI * (2.0 * i / side - 1.0), M_PI * ((j + k + 0.5) / side - 0.5),
+                              0);
+        packet.direction[static_cast<size_t>(k)] =
+            Vector3d(std::cos(angles.x()) * std::cos(angles.y()),
+                     std::sin(angles.x()) * std::cos(angles.y()), std::sin(angles.y()))
+                .cast<float>();
+      }
+      plain.Cast(eye, poses, packet);
+      for (const RayCaster& other : others) {
+        RayPacket again = packet;
+        other.Cast(eye, poses, again);
+        ASSERT_EQ(again.distance, packet.distance) << i << " " << j;
+        ASSERT_EQ(again.part, packet.part) << i << " " << j;
+      }
+    }
+  }
 }
 
 }  // namespace
