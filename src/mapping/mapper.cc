@@ -276,9 +276,9 @@ void Mapper::FinishObjects() {
   }
   {
     const ScopedTimer timer(times_, "object_changes");
-    object_changes_ = FindChanges();
-    if (SplitReplacedObjects()) {
-      object_changes_ = FindChanges();
+    object_changes_ = FindChanges({});
+    if (const std::set<ObjectId> replaced = SplitReplacedObjects(); !replaced.empty()) {
+      object_changes_ = FindChanges(replaced);
     }
     for (const ChangedObject& changed : object_changes_) {
       if (const ObjectId id = FindLeft(changed); id.IsValid()) {
@@ -289,8 +289,8 @@ void Mapper::FinishObjects() {
   PublishSnapshot();
 }
 
-std::vector<ChangedObject> Mapper::FindChanges() const {
-  return FindObjectChanges(former_, map_, former_.NextFrame(), sensor_, object_options_);
+std::vector<ChangedObject> Mapper::FindChanges(const std::set<ObjectId>& left) const {
+  return FindObjectChanges(former_, map_, former_.NextFrame(), sensor_, object_options_, left);
 }
 
 // The object of the map that is gone or was moved away; invalid if the change is another one or if
@@ -302,16 +302,19 @@ ObjectId Mapper::FindLeft(const ChangedObject& changed) const {
   return map_.objects().Contains(id) ? id : ObjectId();
 }
 
-// Splits off new objects that took the location of old ones. Returns whether there are any.
-bool Mapper::SplitReplacedObjects() {
-  bool has_split = false;
+// Splits off new objects that took the location of old ones. Returns the ids of the old ones in the
+// former map.
+std::set<ObjectId> Mapper::SplitReplacedObjects() {
+  std::set<ObjectId> replaced;
   for (const ChangedObject& changed : object_changes_) {
     if (const ObjectId id = FindLeft(changed); id.IsValid()) {
-      has_split |= object_mapper_.SplitOff(map_, id, former_.objects().At(changed.former->object),
-                                           former_.NextFrame());
+      const ObjectId former = changed.former->object;
+      if (object_mapper_.SplitOff(map_, id, former_.objects().At(former), former_.NextFrame())) {
+        replaced.insert(former);
+      }
     }
   }
-  return has_split;
+  return replaced;
 }
 
 // Makes the unit of length of a monocular map the metre if objects of known size are mapped. During

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "hullslam/bow/vocabulary.h"
@@ -95,9 +96,9 @@ class Mapper {
   bool Apply(const LateDetections& late, const Cancellation* hurry);
   bool AddLate(KeyframeId keyframe, const LateDetections& late);
   void BeginSession();
-  std::vector<ChangedObject> FindChanges() const;
+  std::vector<ChangedObject> FindChanges(const std::set<ObjectId>& left) const;
   ObjectId FindLeft(const ChangedObject& changed) const;
-  bool SplitReplacedObjects();
+  std::set<ObjectId> SplitReplacedObjects();
   enum class Culling { kNone, kKeyframes };
   void AddEntities(KeyframeId keyframe, const Cancellation* hurry);
   void Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling);

@@ -101,20 +101,29 @@ UsualSurface SurfaceOf(const Looks& present) {
   return usual;
 }
 
+// How much a surface may differ from the usual one and still be that of the object, m. An ellipsoid
+// is no more precise than a quarter of its thickness. The surface of a hollow thing varies with the
+// view, but what is behind the thing is at least half of the thickness farther away.
+double ToleranceOf(const UsualSurface& usual, double thickness) {
+  constexpr double kSigmas = 3.0;
+  return std::clamp(kSigmas * usual.spread, 0.25 * thickness, 0.5 * thickness);
+}
+
 // The number of missed looks that show what is behind the object, instead of its own surface.
 int CountBehind(const Looks& looks, const UsualSurface& usual) {
-  // Shares of the thickness. An ellipsoid is no more precise than the first one. The surface of a
-  // hollow thing varies with the view, but what is behind the thing is at least half of the
-  // thickness farther away.
-  constexpr double kLeast = 0.25;
-  constexpr double kMost = 0.5;
-  constexpr double kSigmas = 3.0;
   return static_cast<int>(
       std::count_if(looks.missed.begin(), looks.missed.end(), [&](const SeenSurface& surface) {
-        return surface.behind > usual.median + std::clamp(kSigmas * usual.spread,
-                                                          kLeast * surface.thickness,
-                                                          kMost * surface.thickness);
+        return surface.behind > usual.median + ToleranceOf(usual, surface.thickness);
       }));
+}
+
+// Leaves out the looks at what is in front of the object. They tell nothing about it.
+Looks WithoutHidden(Looks looks, const UsualSurface& usual) {
+  const size_t hidden = std::erase_if(looks.missed, [&](const SeenSurface& surface) {
+    return surface.behind < usual.median - ToleranceOf(usual, surface.thickness);
+  });
+  looks.expected -= static_cast<int>(hidden);
+  return looks;
 }
 
 // An object whose location is looked at.
@@ -134,8 +143,8 @@ double SizeRatio(Eigen::Vector3d a, Eigen::Vector3d b) {
 class Comparison {
  public:
   Comparison(const Map& former, const Map& map, FrameId session, const Sensor& sensor,
-             const ObjectOptions& options)
-      : former_(former), map_(map), sensor_(sensor), options_(options) {
+             const ObjectOptions& options, const std::set<ObjectId>& left)
+      : former_(former), map_(map), sensor_(sensor), options_(options), left_(left) {
     for (const auto& [id, keyframe] : map.keyframes()) {
       if (!keyframe.frame->detections.empty()) {
         (keyframe.frame->id < session ? earlier_ : later_).push_back(id);
@@ -170,8 +179,9 @@ class Comparison {
     ObjectLandmark sought = former;
     sought.ellipsoid = InMap(map_, former_, former);
     changed.former = {id, sought.ellipsoid};
-    const Looks later = Look(later_, {now, true}, sought);
-    const bool is_gone = HasLeft(later, Look(earlier_, {now, true}, sought));
+    const Looks present = Look(earlier_, {now, true}, sought);
+    const Looks later = WithoutHidden(Look(later_, {now, true}, sought), SurfaceOf(present));
+    const bool is_gone = left_.contains(id) || HasLeft(later, present);
     changed.expected = later.expected;
     changed.found = later.found;
     changed.change = is_gone           ? ObjectChange::kGone
@@ -212,11 +222,11 @@ class Comparison {
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
     ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
-    const Looks earlier = Look(earlier_, {id, false}, object);
+    const Looks present = Look(later_, {id, false}, object);
+    const Looks earlier = WithoutHidden(Look(earlier_, {id, false}, object), SurfaceOf(present));
     changed.expected = earlier.expected;
     changed.found = earlier.found;
-    changed.change = HasLeft(earlier, Look(later_, {id, false}, object)) ? ObjectChange::kNew
-                                                                         : ObjectChange::kFirstSeen;
+    changed.change = HasLeft(earlier, present) ? ObjectChange::kNew : ObjectChange::kFirstSeen;
     return changed;
   }
 
@@ -230,6 +240,9 @@ class Comparison {
         looks.found >= limits.max_found_ratio * looks.expected ||
         ChanceOfAtMost(looks.found, looks.expected, present.Recall()) > kLeastChance) {
       return false;
+    }
+    if (looks.missed.empty() && present.of_object.empty()) {
+      return true;  // too small for its surface to be measured
     }
     const int absent = looks.replaced + CountBehind(looks, SurfaceOf(present));
     return 2 * absent >= looks.expected - looks.found;
@@ -416,6 +429,7 @@ class Comparison {
   const Map& map_;
   const Sensor& sensor_;
   const ObjectOptions& options_;
+  const std::set<ObjectId>& left_;
   std::vector<KeyframeId> earlier_;
   std::vector<KeyframeId> later_;  // those of the session
   std::set<ObjectId> successors_;  // those that FindSuccessor has found
@@ -442,8 +456,9 @@ std::string_view ToString(ObjectChange change) {
 }
 
 std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
-                                             const Sensor& sensor, const ObjectOptions& options) {
-  return Comparison(former, map, session, sensor, options).Run();
+                                             const Sensor& sensor, const ObjectOptions& options,
+                                             const std::set<ObjectId>& left) {
+  return Comparison(former, map, session, sensor, options, left).Run();
 }
 
 }  // namespace hullslam

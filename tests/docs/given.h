@@ -40,7 +40,10 @@ class DocsExample : public testing::Test {
       stamps.push_back(frame.timestamp);
       images.push_back(cv::imread(frame.image.string()));
       depths.push_back(cv::imread(frame.depth.string(), cv::IMREAD_UNCHANGED));
-      right_images.push_back(images.back());  // as of a baseline that is too short to measure
+      cv::Mat right;  // 12 columns to the right: all things look equally far away
+      cv::copyMakeBorder(images.back().colRange(12, images.back().cols), right, 0, 0, 0, 12,
+                         cv::BORDER_REPLICATE);
+      right_images.push_back(right);
       masks.push_back(masks_);
       const double x = 0.01 * static_cast<double>(poses.size());  // m, as in the sequence
       poses.push_back({Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)});

@@ -375,6 +375,57 @@ TEST_F(ObjectChanges, WhatDepthShowsIsNotGone) {
   EXPECT_EQ(cup.expected, 10);
 }
 
+// Six keyframes show something without a mask a little in front of the place of the cup. They tell
+// nothing; the other four show that the cup is gone.
+TEST_F(ObjectChanges, ALookAtWhatIsInFrontIsNoLook) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> seen = MakeTable();
+  MadeObject sheet = seen[0];
+  seen.erase(seen.begin());
+  for (int i = 0; i < 10; ++i) {
+    const Rigid3 camera = CameraOnCircle(0.2 * i, 1.5, 0.8);
+    const KeyframeId id = AddObserverWithDepth(map_, sensor_, camera, seen);
+    if (i < 6) {
+      MadeObject nearer = sheet;
+      const Eigen::Vector3d towards =
+          Inverse(camera).translation - sheet.ellipsoid.world_from_object.translation;
+      nearer.ellipsoid.world_from_object.translation +=
+          0.5 * sheet.ellipsoid.half_axes.maxCoeff() * towards.normalized();
+      std::vector<MadeObject> surfaces = seen;
+      surfaces.push_back(nearer);
+      auto frame = std::make_shared<Frame>(*map_.keyframes().At(id).frame);
+      frame->depth = DepthOf(surfaces, sensor_, camera, 4.0);
+      map_.ReplaceFrame(id, frame);
+    }
+    mapper_.Process(map_, id);
+  }
+  const ChangedObject cup = Changes().at(0);
+  EXPECT_EQ(cup.change, ObjectChange::kGone);
+  EXPECT_EQ(cup.expected, 4);
+}
+
+TEST_F(ObjectChanges, WhatIsKnownToHaveLeftIsGoneWhateverIsSeen) {
+  Visit(MakeTable());
+  EndFirstSession();
+  Visit(MakeTable());
+  const std::vector<ChangedObject> changes =
+      FindObjectChanges(former_, map_, session_, sensor_, options_, {ObjectId(0)});
+  ASSERT_EQ(changes.at(0).former->object, ObjectId(0));
+  EXPECT_EQ(changes.at(0).change, ObjectChange::kGone);
+  EXPECT_EQ(changes.at(1).change, ObjectChange::kSeenAgain);
+}
+
+// Too few samples of the depth grid are on the marble for its surface to be measured.
+TEST_F(ObjectChanges, ASmallObjectIsGoneWithoutAMeasuredSurface) {
+  std::vector<MadeObject> table = MakeTable();
+  table.push_back(MakeObject("marble", {0.1, -0.1, 0.0}, {0.012, 0.012, 0.012}));
+  Visit(table);
+  EndFirstSession();
+  Visit(MakeTable());
+  EXPECT_EQ(ChangeOf("marble"), ObjectChange::kGone);
+}
+
 // Four looks are enough for a detector that always finds the cup, but not for one that often misses
 // it.
 TEST_F(ObjectChanges, TheFirstSessionTellsHowManyLooksAreEnough) {

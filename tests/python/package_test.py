@@ -98,6 +98,8 @@ def documented_folder(desk, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("document", ["docs/python.md", "README.md"])
 def test_the_examples_of_the_documents_run(document, documented_folder):
+    red_network = pytest.importorskip("red_network")
+    red_network.write_red_network(documented_folder / "yolov8n-seg.onnx")
     (documented_folder / "TUM1.yaml").symlink_to(ROOT / "config" / "TUM1.yaml")
     # Names that README.md does not explain.
     names = {"hullslam": hullslam, "image": np.zeros((480, 640), np.uint8),

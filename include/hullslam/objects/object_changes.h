@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,8 +55,10 @@ struct ChangedObject {
 // Compares the mapped objects of `former`, a map of earlier sessions, with `map`, the same map
 // after a session whose frames have the id `session` or a larger one. The objects of the former map
 // come first, by increasing id, then those that are new or were first seen. Keyframes without any
-// detection count as not seen, so a session without masks changes nothing.
+// detection count as not seen, so a session without masks changes nothing. `left` are objects of
+// the former map that are known to have left.
 std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
-                                             const Sensor& sensor, const ObjectOptions& options);
+                                             const Sensor& sensor, const ObjectOptions& options,
+                                             const std::set<ObjectId>& left = {});
 
 }  // namespace hullslam
