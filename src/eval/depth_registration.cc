@@ -16,9 +16,35 @@ namespace {
 
 constexpr int kShifts = 25;  // per direction; an odd number, so that no shift is the middle one
 
-// The pixels on the near side of a step: something at most two pixels away is farther by a tenth,
-// and nothing there is nearer.
-std::vector<cv::Point> FindSteps(const cv::Mat& depth, const cv::Rect& inside) {
+// A pixel on the near side of a step of the depth.
+struct Step {
+  cv::Point pixel;
+  cv::Vec2f across;  // unit vector
+};
+
+// Unit vectors in the direction in which the depth changes, CV_32FC2. `depth` is 0 where it is not
+// known, and counts as `farthest` there.
+cv::Mat DirectionsOf(const cv::Mat& depth, const cv::Mat& farthest) {
+  constexpr double kSigma = 1.5;  // px
+  cv::Mat filled = depth.clone();
+  farthest.copyTo(filled, depth <= 0.0);
+  cv::log(cv::max(filled, 1e-6), filled);
+  cv::GaussianBlur(filled, filled, cv::Size(), kSigma);
+  std::vector<cv::Mat> parts(2);
+  cv::Sobel(filled, parts[0], CV_32F, 1, 0);
+  cv::Sobel(filled, parts[1], CV_32F, 0, 1);
+  cv::Mat length;
+  cv::magnitude(parts[0], parts[1], length);
+  for (cv::Mat& part : parts) {
+    cv::divide(part, cv::max(length, 1e-9), part);
+  }
+  cv::Mat directions;
+  cv::merge(parts, directions);
+  return directions;
+}
+
+// Something at most two pixels away is farther by a tenth, and nothing there is nearer.
+std::vector<Step> FindSteps(const cv::Mat& depth, const cv::Rect& inside) {
   constexpr float kFarther = 1.1f;
   constexpr float kNearer = 0.97f;
   constexpr float kUnknown = 1e9f;
@@ -32,13 +58,14 @@ std::vector<cv::Point> FindSteps(const cv::Mat& depth, const cv::Rect& inside) {
   cv::Mat without_holes = known.clone();
   without_holes.setTo(kUnknown, known <= 0.0);
   cv::erode(without_holes, nearest, window);
-  std::vector<cv::Point> steps;
+  const cv::Mat directions = DirectionsOf(known, farthest);
+  std::vector<Step> steps;
   for (int y = inside.y; y < inside.br().y; ++y) {
     for (int x = inside.x; x < inside.br().x; ++x) {
       const float z = known.at<float>(y, x);
       if (z > 0.0f && z < kUnknown && farthest.at<float>(y, x) > kFarther * z &&
           nearest.at<float>(y, x) > kNearer * z) {
-        steps.emplace_back(x, y);
+        steps.push_back({{x, y}, directions.at<cv::Vec2f>(y, x)});
       }
     }
   }
@@ -73,34 +100,40 @@ void DepthRegistration::Add(const cv::Mat& full_grey, const cv::Mat& full_depth)
   const cv::Mat depth = Resized(full_depth, size, cv::INTER_NEAREST);
   constexpr int kShare = 160;  // the shifts are multiples of this share of the image
   constexpr int kHalf = kShifts / 2;
-  const cv::Point step(std::max(1, grey.cols / kShare), std::max(1, grey.rows / kShare));
-  const cv::Point margin = kHalf * step;
+  const cv::Point unit(std::max(1, grey.cols / kShare), std::max(1, grey.rows / kShare));
+  const cv::Point margin = kHalf * unit;
   const cv::Rect inside(margin.x, margin.y, std::max(0, grey.cols - 2 * margin.x),
                         std::max(0, grey.rows - 2 * margin.y));
-  const cv::Mat gradient = RelativeGradient(grey);
-  const std::vector<cv::Point> steps = FindSteps(depth, inside);
+  const cv::Mat gradient = RelativeGradientVectors(grey);
+  const std::vector<Step> steps = FindSteps(depth, inside);
   edges_ += steps.size();
   gradients_.resize(static_cast<size_t>(kShifts) * kShifts);
   for (int row = 0; row < kShifts; ++row) {
     for (int column = 0; column < kShifts; ++column) {
-      const cv::Point shift((column - kHalf) * step.x, (row - kHalf) * step.y);
+      const cv::Point shift((column - kHalf) * unit.x, (row - kHalf) * unit.y);
       double& sum = gradients_[static_cast<size_t>(row * kShifts + column)];
-      for (const cv::Point& point : steps) {
-        sum += gradient.at<float>(point + shift);
+      for (const Step& step : steps) {
+        sum += std::abs(step.across.dot(gradient.at<cv::Vec2f>(step.pixel + shift)));
       }
     }
   }
 }
 
-double DepthRegistration::Contrast() const {
+double DepthRegistration::Contrast() const { return LargestWithin(0, 1); }
+
+double DepthRegistration::ContrastElsewhere() const { return LargestWithin(3, kShifts); }
+
+double DepthRegistration::LargestWithin(int from, int to) const {
   Check(edges_ > 0, "there are no steps of the depth");
   const double mean = std::accumulate(gradients_.begin(), gradients_.end(), 0.0) /
                       static_cast<double>(gradients_.size());
   double largest = 0.0;
-  for (const int row : {-1, 0, 1}) {
-    for (const int column : {-1, 0, 1}) {
-      const int shift = (kShifts / 2 + row) * kShifts + kShifts / 2 + column;
-      largest = std::max(largest, gradients_[static_cast<size_t>(shift)]);
+  for (int row = 0; row < kShifts; ++row) {
+    for (int column = 0; column < kShifts; ++column) {
+      const int distance = std::max(std::abs(row - kShifts / 2), std::abs(column - kShifts / 2));
+      if (distance >= from && distance <= to) {
+        largest = std::max(largest, gradients_[static_cast<size_t>(row * kShifts + column)]);
+      }
     }
   }
   return mean > 0.0 ? largest / mean : 1.0;

@@ -20,14 +20,19 @@ class DepthRegistration {
 
   // The number of pixels at steps of the depth.
   size_t edges() const { return edges_; }
-  // The gradient of the colour images at the steps, divided by its mean if the depth images are
+  // The gradient of the colour images across the steps, divided by its mean if the depth images are
   // moved by up to a thirteenth of their size. It is about 1 if they are not registered. The
   // largest value within a shift by 1/160 of the size counts: the two images of a pair are taken up
   // to 0.02 s apart, and a camera that turns by 15 degrees per second moves the image by that much
   // meanwhile. Requires edges() > 0.
   double Contrast() const;
+  // The same for the shift by more than 1/80 of the size at which it is largest.
+  double ContrastElsewhere() const;
 
  private:
+  // The largest contrast of the shifts by `from` to `to` steps.
+  double LargestWithin(int from, int to) const;
+
   size_t edges_ = 0;
   std::vector<double> gradients_;  // sum over the steps for each shift; the middle one is no shift
 };

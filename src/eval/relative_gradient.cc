@@ -3,20 +3,34 @@
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace hullslam {
 
-cv::Mat RelativeGradient(const cv::Mat& grey) {
+cv::Mat RelativeGradientVectors(const cv::Mat& grey) {
   constexpr double kMost = 200.0;
-  cv::Mat dx;
-  cv::Mat dy;
-  cv::Sobel(grey, dx, CV_32F, 1, 0);
-  cv::Sobel(grey, dy, CV_32F, 0, 1);
+  std::vector<cv::Mat> parts(2);
+  cv::Sobel(grey, parts[0], CV_32F, 1, 0);
+  cv::Sobel(grey, parts[1], CV_32F, 0, 1);
+  cv::Mat length;
+  cv::magnitude(parts[0], parts[1], length);
+  cv::Mat factor;
+  cv::divide(kMost, cv::max(length, kMost), factor);
+  const double mean = cv::mean(cv::min(length, kMost))[0];
+  for (cv::Mat& part : parts) {
+    part = part.mul(factor, mean > 0.0 ? 1.0 / mean : 1.0);
+  }
   cv::Mat gradient;
-  cv::magnitude(dx, dy, gradient);
-  gradient = cv::min(gradient, kMost);
-  const double mean = cv::mean(gradient)[0];
-  return mean > 0.0 ? cv::Mat(gradient / mean) : gradient;
+  cv::merge(parts, gradient);
+  return gradient;
+}
+
+cv::Mat RelativeGradient(const cv::Mat& grey) {
+  std::vector<cv::Mat> parts;
+  cv::split(RelativeGradientVectors(grey), parts);
+  cv::Mat length;
+  cv::magnitude(parts[0], parts[1], length);
+  return length;
 }
 
 }  // namespace hullslam

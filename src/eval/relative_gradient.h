@@ -9,4 +9,7 @@ namespace hullslam {
 // are limited, so that a few of them do not decide what is measured with it.
 cv::Mat RelativeGradient(const cv::Mat& grey);
 
+// The same with directions, CV_32FC2.
+cv::Mat RelativeGradientVectors(const cv::Mat& grey);
+
 }  // namespace hullslam

@@ -29,7 +29,7 @@ TEST(RelativeGradient, HasTheMeanOne) {
 // Sobel's filter multiplies the height of an edge by 4, so those above 50 are limited.
 TEST(RelativeGradient, StrongEdgesAreLimited) {
   const cv::Mat gradient = RelativeGradient(TwoEdges(60, 180));
-  EXPECT_EQ(gradient.at<float>(20, 20), gradient.at<float>(20, 40));
+  EXPECT_FLOAT_EQ(gradient.at<float>(20, 20), gradient.at<float>(20, 40));
   const cv::Mat below = RelativeGradient(TwoEdges(40, 180));
   EXPECT_NEAR(below.at<float>(20, 40), 1.25f * below.at<float>(20, 20), 1e-4f);
 }
