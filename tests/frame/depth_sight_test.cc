@@ -3,21 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/core/mat.hpp>
-
+#include "frame/wall_frame.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
 namespace {
-
-constexpr int kWall = 2000;  // mm
-
-// What a camera sees that looks straight at a wall.
-Frame WallFrame(int millimetres = kWall) {
-  Frame frame;
-  frame.depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(millimetres)), 1000.0);
-  return frame;
-}
 
 TEST(DepthSight, APointIsSeenOrSeenPastOrHidden) {
   const Sensor sensor = SyntheticSensor();

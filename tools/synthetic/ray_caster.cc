@@ -126,12 +126,6 @@ void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& fr
   rtcReleaseGeometry(geometry);
 }
 
-SceneHandle NewScene(RTCDevice device) {
-  SceneHandle scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  return scene;
-}
-
 // Casts the rays of the packet, given in the frame of `scene`, and keeps hits that are nearer than
 // those in the packet.
 void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
@@ -180,7 +174,7 @@ RayCaster::RayCaster(const Scene& scene, const std::string& embree_options)
   device_->device.reset(rtcNewDevice(embree_options.c_str()));
   Check(device_->device != nullptr, "Embree has no device on this machine");
   RTCDevice device = device_->device.get();
-  device_->still = NewScene(device);
+  device_->still.reset(rtcNewScene(device));
   for (const Part& part : scene.background) {
     Attach(device, device_->still.get(), part, part.owner_from_part,
            static_cast<unsigned>(parts_.size()), device_->meshes.emplace_back());
@@ -189,7 +183,7 @@ RayCaster::RayCaster(const Scene& scene, const std::string& embree_options)
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (object.IsDynamic()) {
-      device_->movers.push_back({static_cast<int>(i), NewScene(device)});
+      device_->movers.push_back({static_cast<int>(i), SceneHandle(rtcNewScene(device))});
     }
     RTCScene target =
         object.IsDynamic() ? device_->movers.back().scene.get() : device_->still.get();
