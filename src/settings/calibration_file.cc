@@ -2,6 +2,7 @@
 #include "settings/calibration_file.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <array>
 #include <string_view>

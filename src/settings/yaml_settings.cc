@@ -2,8 +2,7 @@
 #include "settings/yaml_settings.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/node/iterator.h>
-#include <yaml-cpp/node/node.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <map>

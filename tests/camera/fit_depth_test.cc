@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <opencv2/core.hpp>
 
 namespace hullslam {
 namespace {
