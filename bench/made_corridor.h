@@ -22,7 +22,9 @@ namespace hullslam {
 // A long wall of points with objects in front of it, and the frames of a camera that walks along it
 // at 1.2 m/s, looks at it, and turns back at the ends. Frames are made without images. Every frame
 // also has keypoints that no other frame sees, so that landmarks are made and soon removed, as in
-// real images. The same frame always has the same bits.
+// real images. Masks are like those of a network: one object in five is missed, one in eight has
+// another class, one in ten is found twice, and each frame has a mask that shows no object. The
+// same frame always has the same bits.
 class MadeCorridor {
  public:
   // `length_in_frames` is the number of frames of one way.
@@ -69,7 +71,7 @@ class MadeCorridor {
     frame->features.grid = FeatureGrid(frame->features.keypoints,
                                        Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                                        Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
-    AddDetections(cam_from_world, *frame);
+    AddDetections(cam_from_world, random, *frame);
     frame->detections.shrink_to_fit();
     return frame;
   }
@@ -153,22 +155,40 @@ class MadeCorridor {
     features.right_u.push_back(static_cast<float>(pixel.x() - sensor_.camera.bf / depth));
   }
 
-  void AddDetections(const Rigid3& cam_from_world, Frame& frame) const {
-    constexpr std::array kLabels = {"cup", "book", "bottle", "plant", "bowl"};
-    const double x = Inverse(cam_from_world).translation.x();
+  void AddDetections(const Rigid3& cam_from_world, std::mt19937_64& random, Frame& frame) const {
+    const Eigen::Vector3d center = Inverse(cam_from_world).translation;
     for (size_t i = 0; i < objects_.size(); ++i) {
-      if (std::abs(objects_[i].world_from_object.translation.x() - x) > kReach) {
+      if (std::abs(objects_[i].world_from_object.translation.x() - center.x()) > kReach) {
         continue;
       }
-      const auto ellipse = ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world, objects_[i]);
-      if (ellipse && sensor_.bounds.Contains(ellipse->Bounds().min()) &&
-          sensor_.bounds.Contains(ellipse->Bounds().max())) {
-        Detection& detection = frame.detections.emplace_back();
-        detection.label = kLabels[i % kLabels.size()];
-        Outline(*ellipse, detection);
-        AddPointsOn(objects_[i], cam_from_world, detection);
-        AddKeypointsIn(*ellipse, objects_[i], cam_from_world, frame.features, detection);
+      const bool is_found = random() % 5 != 0;
+      const bool is_mistaken = random() % 8 == 0;
+      const bool is_doubled = random() % 10 == 0;
+      if (is_found) {
+        AddDetection(objects_[i], is_mistaken ? i + 1 : i, cam_from_world, frame);
       }
+      if (is_found && is_doubled) {
+        AddDetection(objects_[i], i + 2, cam_from_world, frame);
+      }
+    }
+    std::uniform_real_distribution<double> offset(-0.8, 0.8);
+    const Eigen::Vector3d nowhere = center + Eigen::Vector3d(offset(random), offset(random), 2.0);
+    AddDetection({{Eigen::Quaterniond::Identity(), nowhere}, Eigen::Vector3d::Constant(0.1)},
+                 random(), cam_from_world, frame);
+  }
+
+  // Nothing if the object is not wholly in the image.
+  void AddDetection(const Ellipsoid& object, size_t label, const Rigid3& cam_from_world,
+                    Frame& frame) const {
+    constexpr std::array kLabels = {"cup", "book", "bottle", "plant", "bowl"};
+    const auto ellipse = ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world, object);
+    if (ellipse && sensor_.bounds.Contains(ellipse->Bounds().min()) &&
+        sensor_.bounds.Contains(ellipse->Bounds().max())) {
+      Detection& detection = frame.detections.emplace_back();
+      detection.label = kLabels[label % kLabels.size()];
+      Outline(*ellipse, detection);
+      AddPointsOn(object, cam_from_world, detection);
+      AddKeypointsIn(*ellipse, object, cam_from_world, frame.features, detection);
     }
   }
 

@@ -21,7 +21,8 @@ struct KeyframeEvidence {
   int unknown_objects = 0;           // detections that show no mapped object
   int fruitless_requests =
       0;  // keyframes requested for objects alone since an object was last mapped
-  double next_overlap = 1.0;  // share of the reference's view in the next image (NextOverlap)
+  double next_overlap = 1.0;   // share of the reference's view in the next image (NextOverlap)
+  bool is_known_view = false;  // another keyframe shows the same (IsKnownView)
   size_t keyframes = 0;
   // Parts of the map are not joined to one another, and the frame may help to join them
   // (JoinRequests).
@@ -75,6 +76,10 @@ struct KeyframePolicy {
   // poses says how far away those are: a match that slid along an edge fits the two views as well
   // as the right one. A pose that needs them agrees with them even if it is wrong, and keyframes
   // in a row, each of which is held by the landmarks of the one before, would drift away unnoticed.
+  //
+  // Where another keyframe shows the same, tracking counts as strong: the frame finds fewer
+  // landmarks than the reference keyframe has because keypoints differ from image to image, and a
+  // new keyframe would only double them. So a camera that stays in a place adds no keyframes.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

@@ -8,6 +8,7 @@
 #include "frame/wide_sensor.h"
 #include "map/islands.h"
 #include "tracking/image_overlap.h"
+#include "tracking/known_view.h"
 
 namespace hullslam {
 namespace {
@@ -333,6 +334,10 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   if (relocalised_at_) {
     evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;
   }
+  if (!policy_.NeedsKeyframe(evidence)) {
+    return false;
+  }
+  evidence.is_known_view = IsKnownView(map, sensor_, frame, tracking.reference, tracking.estimate);
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }

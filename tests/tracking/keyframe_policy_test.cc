@@ -51,6 +51,16 @@ TEST(KeyframePolicy, AsksWhenTrackingHasWeakenedAgainstTheReference) {
   });
 }
 
+TEST(KeyframePolicy, AKnownViewNeedsNoKeyframe) {
+  const auto weak = [](auto& e) { e.inliers = 100, e.close_tracked = 90, e.close_untracked = 80; };
+  ExpectDecisions({
+      {"a new view", With(weak), true},
+      {"a known one", With([&](auto& e) { weak(e), e.is_known_view = true; }), false},
+      {"with an unknown object",
+       With([&](auto& e) { weak(e), e.is_known_view = true, e.unknown_objects = 1; }), true},
+  });
+}
+
 TEST(KeyframePolicy, WaitsLongerWhileThereIsASingleKeyframe) {
   ExpectDecisions({
       {"exactly 40 %", With([](auto& e) { e.keyframes = 1, e.inliers = 80; }), false},

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/known_view.h"
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+// A camera in a map of two keyframes that are 0.2 s apart. Much later it may be there again.
+class KnownView : public testing::Test {
+ protected:
+  // The camera finds each `period`th of the landmarks that it sees.
+  bool IsKnown(const Rigid3& motion, double seconds_later, size_t period = 1) const {
+    const Keyframe& first = made_.map.keyframes().At(KeyframeId(0));
+    PoseEstimate estimate;
+    estimate.cam_from_world = motion * first.cam_from_world;
+    const SyntheticView view = world_.Observe(FrameId(99), estimate.cam_from_world);
+    for (size_t i = 0; i < view.points.size(); ++i) {
+      estimate.landmarks.push_back(i % period == 0 ? made_.landmarks[view.points[i]]
+                                                   : LandmarkId());
+    }
+    Frame frame = *view.frame;
+    frame.timestamp = first.frame->timestamp + seconds_later;
+    return IsKnownView(made_.map, world_.sensor(), frame, KeyframeId(0), estimate);
+  }
+  static Rigid3 Moved(double x, double z = 0.0) {
+    return {Eigen::Quaterniond::Identity(), {x, 0.0, z}};
+  }
+  static Rigid3 Turned(double radians) {
+    return {ExpSo3({0.0, radians, 0.0}), Eigen::Vector3d::Zero()};
+  }
+
+  const SyntheticWorld world_;
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
+};
+
+TEST_F(KnownView, IsOneOfAnotherTime) {
+  EXPECT_TRUE(IsKnown(Rigid3(), 60.0));
+  EXPECT_TRUE(IsKnown(Rigid3(), -60.0)) << "a session before may have another clock";
+  EXPECT_FALSE(IsKnown(Rigid3(), 10.0)) << "keyframes along a path are as dense as ever";
+}
+
+// The points are 2 to 6 m away, half of them nearer than 4 m. 4 % of the width are 26 px, or 0.2 m
+// at 4 m.
+TEST_F(KnownView, IsSeenFromAlmostTheSamePlace) {
+  EXPECT_TRUE(IsKnown(Moved(0.15), 60.0));
+  EXPECT_FALSE(IsKnown(Moved(-0.6), 60.0));
+  EXPECT_TRUE(IsKnown(Turned(0.03), 60.0));
+  EXPECT_FALSE(IsKnown(Turned(-0.1), 60.0));
+  EXPECT_TRUE(IsKnown(Moved(0.0, -0.2), 60.0));
+  EXPECT_FALSE(IsKnown(Moved(0.0, -0.8), 60.0)) << "much nearer, in the middle of the image";
+}
+
+TEST_F(KnownView, IsAlsoThatOfACovisibleKeyframe) {
+  const Keyframe& first = made_.map.keyframes().At(KeyframeId(0));
+  const Keyframe& second = made_.map.keyframes().At(KeyframeId(1));
+  const Rigid3 between = second.cam_from_world * Inverse(first.cam_from_world);
+  ASSERT_FALSE(first.covisible.empty());
+  EXPECT_TRUE(IsKnown(between, 60.0));
+}
+
+TEST_F(KnownView, IsNoneIfItsLandmarksAreNotFound) {
+  EXPECT_TRUE(IsKnown(Rigid3(), 60.0, 2));
+  EXPECT_FALSE(IsKnown(Rigid3(), 60.0, 6)) << "the light has changed";
+}
+
+}  // namespace
+}  // namespace hullslam
