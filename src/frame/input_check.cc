@@ -59,6 +59,10 @@ constexpr double kLongest = 3.0;
 constexpr size_t kFewestOff = 4;
 constexpr double kShareOff = 0.2;
 
+// Of the size of an image. Lenses are mounted better than that, but images of half the size with
+// the calibration of the whole ones have it at their border.
+constexpr double kMostFromMiddle = 0.3;
+
 }  // namespace
 
 InputCheck::InputCheck(const Sensor& sensor, const DepthOptions& depth)
@@ -69,6 +73,17 @@ InputCheck::InputCheck(const Sensor& sensor, const DepthOptions& depth)
         "the baseline is {:.3g} m, expected {} to {} m; Camera.bf is the baseline in metres times "
         "Camera.fx, and the translation between two cameras is in metres",
         baseline, kShortest, kLongest));
+  }
+  const PinholeCamera& camera = sensor.camera;
+  const auto is_central = [](double place, int size) {
+    return std::abs(place / size - 0.5) <= kMostFromMiddle;
+  };
+  if (camera.width > 0 && camera.height > 0 &&
+      !(is_central(camera.cx, camera.width) && is_central(camera.cy, camera.height))) {
+    Warn(fmt::format(
+        "the principal point ({:.0f}, {:.0f}) is far from the middle of images of {}x{} px; were "
+        "the images resized after the calibration?",
+        camera.cx, camera.cy, camera.width, camera.height));
   }
 }
 

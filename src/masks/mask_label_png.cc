@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <set>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "files/json_file.h"
@@ -169,15 +172,29 @@ cv::Mat ReadLabels(const std::filesystem::path& path) {
                                                 : ReadLabelImage(path);
 }
 
+// The number that a name consists of: 7 for "00007".
+std::optional<size_t> NumberOf(const std::string& stem) {
+  size_t number = 0;
+  const char* const end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data(), end, number);
+  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+}
+
 class LabelPngMasks : public MaskSource {
  public:
   explicit LabelPngMasks(const MaskRequest& request)
       : request_(request),
         stems_(ListFiles(request.path, ".png")),
-        classes_(ClassesReader(request.path / kClassesFile).Read()) {}
+        classes_(ClassesReader(request.path / kClassesFile).Read()) {
+    for (const std::string& stem : stems_) {
+      if (const auto number = NumberOf(stem)) {
+        by_number_[*number] = stem;
+      }
+    }
+  }
 
   std::string format() const override { return std::string(kLabelPngName); }
-  bool Contains(const MaskFrame& frame) const override { return stems_.contains(frame.stem); }
+  bool Contains(const MaskFrame& frame) const override { return !StemOf(frame).empty(); }
   std::string Example() const override { return stems_.empty() ? "" : *stems_.begin() + ".png"; }
 
   FrameMasks Read(const MaskFrame& frame) const override {
@@ -200,8 +217,18 @@ class LabelPngMasks : public MaskSource {
   }
 
  private:
+  // The name of a frame's file without ".png"; empty if there is none. SAM 2 numbers its files from
+  // 00000. Where the images are numbers as well, theirs count.
+  std::string StemOf(const MaskFrame& frame) const {
+    if (stems_.contains(frame.stem)) {
+      return frame.stem;
+    }
+    const auto found = by_number_.find(NumberOf(frame.stem).value_or(frame.number));
+    return found == by_number_.end() ? std::string() : found->second;
+  }
+
   std::filesystem::path Path(const MaskFrame& frame) const {
-    return request_.path / (frame.stem + ".png");
+    return request_.path / (StemOf(frame) + ".png");
   }
 
   cv::Mat Load(const MaskFrame& frame) const {
@@ -216,7 +243,7 @@ class LabelPngMasks : public MaskSource {
   }
 
   const InstanceClass& ClassOf(const MaskFrame& frame, int number) const {
-    const auto of_frame = classes_.of_frame.find(frame.stem);
+    const auto of_frame = classes_.of_frame.find(StemOf(frame));
     if (of_frame != classes_.of_frame.end()) {
       const auto entry = of_frame->second.find(number);
       if (entry != of_frame->second.end()) {
@@ -233,6 +260,7 @@ class LabelPngMasks : public MaskSource {
 
   MaskRequest request_;
   std::set<std::string> stems_;
+  std::map<size_t, std::string> by_number_;
   LabelClasses classes_;
 };
 

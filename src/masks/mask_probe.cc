@@ -144,6 +144,14 @@ std::string DescribeFolderMisfit(const MaskProbe& probe) {
   if (probe.jsons > 0) {
     return "has a JSON file that is not named as a frame; give the path of the file";
   }
+  for (const char* const ending : {".npy", ".npz"}) {
+    if (!ListFiles(probe.path, ending).empty()) {
+      return fmt::format(
+          "has {} files, which HullSLAM does not read as masks; write a PNG per frame with the "
+          "number of an instance in each pixel, and classes.json (label-png)",
+          ending);
+    }
+  }
   return "has neither text files nor PNG or JSON files, expected masks" +
          SuggestSubfolder(probe.path);
 }

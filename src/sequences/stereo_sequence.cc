@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,16 +33,18 @@ namespace fs = std::filesystem;
 
 // ---- KITTI
 
-// A row "P0: 12 numbers" of a calib.txt: a 3x4 projection of rectified images, by rows. The fourth
-// column is the focal length times the position of the camera to the left of camera 0.
+// A row "P0: 12 numbers" of the odometry benchmark, or "P_rect_00:" of the raw data: a 3x4
+// projection of rectified images, by rows. The fourth column is the focal length times the position
+// of the camera to the left of camera 0.
 using Projection = std::array<double, 12>;
 
-std::map<std::string, Projection> ReadProjections(const fs::path& file) {
+// The projections by the digit of the camera.
+std::map<char, Projection> ReadProjections(const fs::path& file) {
   constexpr double kMost = 1e6;
-  std::map<std::string, Projection> projections;
+  std::map<char, Projection> projections;
   ForEachRow(file, [&](const TextRow& row) {
     const std::string_view name = row.columns.front();
-    if (!name.starts_with('P') || !name.ends_with(':')) {
+    if (!name.starts_with('P') || !name.ends_with(':') || name.size() < 3) {
       return;  // the transform to the laser scanner, for example
     }
     CheckColumns(row, 13, "name and the 12 numbers of a projection");
@@ -49,7 +52,7 @@ std::map<std::string, Projection> ReadProjections(const fs::path& file) {
     for (size_t i = 0; i < projection.size(); ++i) {
       projection[i] = row.Number(i + 1, "number of a projection", kMost);
     }
-    projections[std::string(name.substr(0, name.size() - 1))] = projection;
+    projections[name[name.size() - 2]] = projection;
   });
   return projections;
 }
@@ -58,32 +61,32 @@ PinholeCamera LeftCameraOf(const Projection& p) {
   return {.fx = p[0], .fy = p[5], .cx = p[2], .cy = p[6]};
 }
 
-PinholeCamera CameraOf(const fs::path& file, const std::string& name) {
-  const std::map<std::string, Projection> projections = ReadProjections(file);
-  const auto found = projections.find(name);
+const Projection& ProjectionOf(const fs::path& file, const std::map<char, Projection>& projections,
+                               char camera) {
+  const auto found = projections.find(camera);
   if (found == projections.end()) {
-    throw InputError(
-        fmt::format("{}: has no row '{}:', expected a calibration of KITTI", file.string(), name));
+    throw InputError(fmt::format(
+        "{}: has neither a row 'P{}:' nor 'P_rect_0{}:', expected a calibration of KITTI",
+        file.string(), camera, camera));
   }
-  return LeftCameraOf(found->second);
+  return found->second;
 }
 
-PinholeCamera CameraOfPair(const fs::path& file, const std::string& left_name,
-                           const std::string& right_name) {
-  const std::map<std::string, Projection> projections = ReadProjections(file);
-  const auto left = projections.find(left_name);
-  const auto right = projections.find(right_name);
-  if (left == projections.end() || right == projections.end()) {
-    throw InputError(fmt::format("{}: has no rows '{}:' and '{}:', expected a calibration of KITTI",
-                                 file.string(), left_name, right_name));
-  }
-  PinholeCamera camera = LeftCameraOf(left->second);
-  camera.bf = left->second[3] - right->second[3];
+PinholeCamera CameraOf(const fs::path& file, char camera) {
+  return LeftCameraOf(ProjectionOf(file, ReadProjections(file), camera));
+}
+
+PinholeCamera CameraOfPair(const fs::path& file, char left_camera, char right_camera) {
+  const std::map<char, Projection> projections = ReadProjections(file);
+  const Projection& left = ProjectionOf(file, projections, left_camera);
+  const Projection& right = ProjectionOf(file, projections, right_camera);
+  PinholeCamera camera = LeftCameraOf(left);
+  camera.bf = left[3] - right[3];
   if (!(camera.bf > 0.0)) {
     throw InputError(fmt::format(
-        "{}: camera {} is {:g} m to the right of camera {}, expected more than 0: left and right "
+        "{}: camera P{} is {:g} m to the right of camera P{}, expected more than 0: left and right "
         "are swapped, or are the same",
-        file.string(), right_name, camera.fx != 0.0 ? camera.bf / camera.fx : 0.0, left_name));
+        file.string(), right_camera, camera.fx != 0.0 ? camera.bf / camera.fx : 0.0, left_camera));
   }
   return camera;
 }
@@ -149,8 +152,8 @@ struct KittiFiles {
   fs::path right;
   fs::path times;
   fs::path calibration;
-  std::string left_name;  // of the projection
-  std::string right_name;
+  char left_camera;  // its digit
+  char right_camera;
 };
 
 // `right` is the folder of the right images; empty for the left ones alone.
@@ -189,32 +192,37 @@ std::optional<fs::path> FindKittiTruth(const fs::path& folder) {
   return std::nullopt;
 }
 
-// The calibration of the raw data is beside the folders of the drives of a day, or was copied into
-// one.
-fs::path RawCalibration(const fs::path& folder) {
-  const fs::path own = folder / "calib_cam_to_cam.txt";
+// The first file that exists; the last one if none does.
+fs::path FirstThere(std::initializer_list<fs::path> files) {
   std::error_code error;
-  return fs::exists(own, error)
-             ? own
-             : fs::weakly_canonical(folder, error).parent_path() / own.filename();
+  const auto* const found = std::find_if(
+      files.begin(), files.end(), [&](const fs::path& file) { return fs::exists(file, error); });
+  return found == files.end() ? *std::prev(files.end()) : *found;
 }
 
 // The first of the folders that exist: grey or colour images of the odometry benchmark or of the
-// raw data.
+// raw data. The calibration of the raw data is beside the folders of the drives of a day, or was
+// copied into one. Some people have the images of one in the folders of the other.
 std::optional<KittiFiles> FindIn(const fs::path& folder) {
   std::error_code error;
-  for (const auto& [left, right] : {std::pair("0", "1"), std::pair("2", "3")}) {
-    const auto image = [&](const char* digits, const char* camera) {
+  const fs::path times = folder / "times.txt";
+  const fs::path calibration = folder / "calib.txt";
+  for (const auto& [left, right] : {std::pair('0', '1'), std::pair('2', '3')}) {
+    const auto image = [&](const char* digits, char camera) {
       return folder / fmt::format("image_{}{}", digits, camera);
     };
     if (fs::is_directory(image("", left), error)) {
-      return KittiFiles{image("", left),      image("", right),        folder / "times.txt",
-                        folder / "calib.txt", std::string("P") + left, std::string("P") + right};
+      return KittiFiles{image("", left), image("", right), times, calibration, left, right};
     }
     if (fs::is_directory(image("0", left) / "data", error)) {
-      return KittiFiles{image("0", left) / "data",      image("0", right) / "data",
-                        image("0", left) / kRawTimes,   RawCalibration(folder),
-                        std::string("P_rect_0") + left, std::string("P_rect_0") + right};
+      const fs::path raw = "calib_cam_to_cam.txt";
+      const fs::path day = fs::weakly_canonical(folder, error).parent_path();
+      return KittiFiles{image("0", left) / "data",
+                        image("0", right) / "data",
+                        FirstThere({times, image("0", left) / kRawTimes}),
+                        FirstThere({calibration, folder / raw, day / raw}),
+                        left,
+                        right};
     }
   }
   return std::nullopt;
@@ -356,7 +364,7 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
   sequence.images.dataset = "kitti";
   if (rectifier == nullptr) {
     sequence.calibration.camera =
-        CameraOfPair(files.calibration, files.left_name, files.right_name);
+        CameraOfPair(files.calibration, files.left_camera, files.right_camera);
   }
   sequence.images.frames =
       ListKittiImages(files.times, files.left, files.right, sequence.images.warnings);
@@ -372,7 +380,7 @@ LeftSequence OpenKittiImages(const fs::path& folder, const FrameSelection& selec
   const KittiFiles files = FindKittiFiles(folder);
   LeftSequence sequence;
   sequence.images.dataset = "kitti_left";
-  sequence.calibration.camera = CameraOf(files.calibration, files.left_name);
+  sequence.calibration.camera = CameraOf(files.calibration, files.left_camera);
   sequence.images.frames = ListKittiImages(files.times, files.left, {}, sequence.images.warnings);
   FinishKitti(folder, selection, sequence.images, sequence.calibration);
   return sequence;

@@ -27,10 +27,15 @@ class InputCheckTest : public ::testing::Test {
     return options;
   }
 
-  static Sensor Stereo(double baseline) {
+  static Sensor Rgbd() {
     Sensor sensor;
-    sensor.kind = SensorKind::kStereo;
     sensor.camera = {.fx = 500, .fy = 500, .cx = 320, .cy = 240, .width = 640, .height = 480};
+    return sensor;
+  }
+
+  static Sensor Stereo(double baseline) {
+    Sensor sensor = Rgbd();
+    sensor.kind = SensorKind::kStereo;
     sensor.camera.bf = baseline * sensor.camera.fx;
     return sensor;
   }
@@ -48,7 +53,7 @@ class InputCheckTest : public ::testing::Test {
 };
 
 TEST_F(InputCheckTest, PlausibleDepthIsNoFault) {
-  const Sensor sensor;
+  const Sensor sensor = Rgbd();
   InputCheck check(sensor, WithUnits(5000.0));
   check.CheckDepth(cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000)));
   EXPECT_TRUE(check.warnings().empty());
@@ -58,7 +63,7 @@ TEST_F(InputCheckTest, PlausibleDepthIsNoFault) {
 }
 
 TEST_F(InputCheckTest, OnlyTheFirstDepthThatIsKnownCounts) {
-  const Sensor sensor;
+  const Sensor sensor = Rgbd();
   InputCheck check(sensor, WithUnits(1000.0));
   check.CheckDepth(cv::Mat(48, 64, CV_16UC1, cv::Scalar(0)));
   for (int i = 0; i < 3; ++i) {
@@ -70,7 +75,7 @@ TEST_F(InputCheckTest, OnlyTheFirstDepthThatIsKnownCounts) {
 }
 
 TEST_F(InputCheckTest, DepthInMetresThatCannotBeMetresIsRefused) {
-  const Sensor sensor;
+  const Sensor sensor = Rgbd();
   InputCheck check(sensor, {});
   cv::Mat raw(48, 64, CV_32FC1, cv::Scalar(9000.0));
   ExpectInputError([&] { check.CheckDepth(raw); }, {"float32", "9000", "expected metres"});
@@ -113,6 +118,16 @@ TEST_F(InputCheckTest, RowsThatDisagreeNowAndThenAreThoseOfALateImage) {
   Add(std::vector<int>(40, 6), 3.0, check);
   ASSERT_EQ(check.warnings().size(), 1U);
   EXPECT_NE(check.warnings()[0].find("taken at the same time"), std::string::npos);
+}
+
+TEST_F(InputCheckTest, APrincipalPointAtTheBorderIsNamed) {
+  Sensor sensor = Stereo(0.1);
+  sensor.camera.cx = 400;
+  EXPECT_TRUE(InputCheck(sensor, {}).warnings().empty());
+  sensor.camera.width = 320;  // the images are half as large as those of the calibration
+  sensor.camera.height = 240;
+  EXPECT_NE(InputCheck(sensor, {}).warnings().at(0).find("(400, 240) is far from the middle"),
+            std::string::npos);
 }
 
 TEST_F(InputCheckTest, BaselinesAndDepthsThatNoCameraHasAreNamed) {

@@ -125,6 +125,19 @@ TEST_F(LabelPngTest, TheNumbersOfAPaletteAreRead) {
   ExpectRefusal({"1.5.png: two entries of its palette have the same colour"});
 }
 
+// As SAM 2 numbers them. What the numbers of images say comes before their order.
+TEST_F(LabelPngTest, FilesMayBeNumbered) {
+  frames_ = {{"1.5", 0}, {"2.5", 1}, {"3.5", 12}};
+  std::filesystem::remove(Path("1.5.png"));
+  Write("00001.png", EncodePng(labels_));
+  EXPECT_TRUE(ReadFrame(0).is_missing);
+  EXPECT_EQ(ReadFrame(1).masks.size(), 2U);
+  EXPECT_TRUE(ReadFrame(2).is_missing);
+  frames_ = {{"000002", 1}, {"000001", 7}};
+  EXPECT_TRUE(ReadFrame(0).is_missing);
+  EXPECT_EQ(ReadFrame(1).masks.size(), 2U);
+}
+
 TEST_F(LabelPngTest, IsDetected) {
   format_ = "";
   EXPECT_EQ(Open()->format(), "label-png");

@@ -46,6 +46,8 @@ TEST_F(OpenMasksTest, SeveralFormatsInOneFolderAreRefused) {
 TEST_F(OpenMasksTest, AFolderWithoutMasksIsDescribed) {
   Write("notes.md", "");
   ExpectRefusal({Path().string(), "has neither text files nor PNG or JSON files"});
+  Write("1.5.npz", "");
+  ExpectRefusal({Path().string(), "has .npz files", "label-png"});
   Write("masks.json", "{}");
   ExpectRefusal({"has a JSON file that is not named as a frame", "give the path of the file"});
   Write("1.5.png", "");

@@ -128,6 +128,20 @@ TEST_F(StereoSequenceTest, DrivesOfTheRawDataOfKittiAreRead) {
   ExpectInputError([&] { OpenKittiPairs(drive); }, {"calib_cam_to_cam.txt"});
 }
 
+TEST_F(StereoSequenceTest, FoldersOfTheRawDataMayHaveFilesOfTheBenchmark) {
+  WriteKitti();
+  for (const char* const side : {"0", "1"}) {
+    const fs::path images = folder_.path() / (std::string("image_0") + side);
+    fs::create_directory(images);
+    fs::rename(folder_.path() / (std::string("image_") + side), images / "data");
+  }
+  EXPECT_EQ(OpenKittiPairs(folder_.path()).calibration.camera.bf, 350.0);
+  folder_.Write(
+      "calib.txt",
+      "P_rect_00: 710 0 10 0 0 710 5 0 0 0 1 0\nP_rect_01: 710 0 10 -355 0 710 5 0 0 0 1 0\n");
+  EXPECT_EQ(OpenKittiPairs(folder_.path()).calibration.camera.bf, 355.0);
+}
+
 TEST_F(StereoSequenceTest, PairsOfTartanAirHaveTheirTruth) {
   for (const char* const name : {"000000", "000001"}) {
     WriteImage(std::string("image_left/") + name + "_left.png");
@@ -146,7 +160,7 @@ TEST_F(StereoSequenceTest, BrokenFilesOfKittiAreRefused) {
   ExpectKittiError({"has no folder image_0", "KITTI"});
   WriteKitti();
   folder_.Write("calib.txt", "P0: 700 0 10 0 0 700 5 0 0 0 1 0\n");
-  ExpectKittiError({"calib.txt", "'P0:' and 'P1:'"});
+  ExpectKittiError({"calib.txt", "'P1:'", "'P_rect_01:'"});
   folder_.Write("calib.txt", "P0: 700 0 10\n");
   ExpectKittiError({"calib.txt:1: 4 column(s), expected 13"});
   folder_.Write("calib.txt", "P0: 700 0 10 0 0 x 5 0 0 0 1 0\n");
