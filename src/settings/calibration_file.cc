@@ -30,9 +30,10 @@ const char* KeyOf(const YamlMap& map, const std::array<const char*, kCount>& nam
   return names.front();
 }
 
-constexpr std::array kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix"};
+// The first names are those of OpenCV's own programs and of ROS, the others those of scripts.
+constexpr std::array kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "mtx", "K"};
 constexpr std::array kDistortionKeys = {"distortion_coefficients", "Distortion_Coefficients",
-                                        "distCoeffs"};
+                                        "distCoeffs", "dist", "D"};
 constexpr std::array kWidthKeys = {"image_width", "image_Width"};
 constexpr std::array kHeightKeys = {"image_height", "image_Height"};
 
@@ -52,6 +53,11 @@ RecognisedCalibration CalibrationOfMatrix(const YamlMap& file) {
   camera.cy = k[5];
   const char* const width = KeyOf(file, kWidthKeys);
   const char* const height = KeyOf(file, kHeightKeys);
+  if (!file.Has(width) || !file.Has(height)) {
+    file.Fail(matrix,
+              "is of a calibration of OpenCV that does not tell the size of the images; add the "
+              "lines 'image_width: 640' and 'image_height: 480' with theirs");
+  }
   camera.width = file.Pixels(width, file.Number(width));
   camera.height = file.Pixels(height, file.Number(height));
   const char* const distortion = KeyOf(file, kDistortionKeys);

@@ -65,7 +65,8 @@ std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
 
 std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file, const YAML::Node& root) {
   if (!root.IsMap()) {
-    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
+    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'" +
+                     (file.extension() == ".xml" ? " (OpenCV writes them in a file .yml)" : ""));
   }
   std::vector<WrittenSetting> settings;
   std::map<std::string, int> lines;  // of the keys, from 1

@@ -124,6 +124,19 @@ TEST_F(CalibrationFile, OfOpenCv) {
   EXPECT_EQ(Read(With(four, "fisheye_model: 1", "fisheye_model: 0"))->calibration.camera.p1, 0.3);
 }
 
+// What scripts write: other names, and often no size.
+TEST_F(CalibrationFile, OfScripts) {
+  const std::string matrices =
+      "mtx: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [ 517., 0., 318., 0., 516., 255., 0., 0., 1. ]\n"
+      "dist: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n   data: [ 0.1, 0., 0., 0. ]\n";
+  const PinholeCamera camera =
+      Read("%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n" + matrices)->calibration.camera;
+  EXPECT_EQ(camera.fx, 517.0);
+  EXPECT_EQ(camera.height, 480);
+  ExpectRefusal("%YAML:1.0\n---\n" + matrices, {"c.yaml:3: mtx", "image_width"});
+}
+
 TEST_F(CalibrationFile, OfRos) {
   const auto read = Read(kRos);
   ASSERT_TRUE(read);
@@ -212,7 +225,8 @@ TEST_F(CalibrationFile, SettingsAreNone) {
 }
 
 TEST_F(CalibrationFile, BrokenFilesAreRefusedWithLineAndKey) {
-  ExpectRefusal(With(kOpenCv, "image_width: 1280", ""), {"image_width is not given"});
+  ExpectRefusal(With(kOpenCv, "image_width: 1280", ""),
+                {"c.yaml:7: camera_matrix", "does not tell the size", "image_width: 640"});
   ExpectRefusal(With(kOpenCv, "image_width: 1280", "image_width: 0.5"),
                 {"c.yaml:4: image_width", "a number of pixels"});
   ExpectRefusal(With(kOpenCv, "0., 0., 1. ]", "0., 0. ]"),

@@ -75,6 +75,8 @@ TEST_F(YamlSettings, AMapOfSingleValuesHasPairs) {
 TEST_F(YamlSettings, BrokenFilesAreRefused) {
   ExpectInputError([&] { Read("a: 1\na: 2\n"); }, {"a.yaml:3: key 'a' was given before", "line 2"});
   ExpectInputError([&] { Read("- 1\n- 2\n"); }, {"a.yaml: has no settings"});
+  ExpectInputError([&] { ReadYamlSettings(folder_.Write("a.xml", "%YAML:1.0\n- 1\n")); },
+                   {"a.xml", "a file .yml"});
   ExpectInputError([&] { Read("a: \"1\n"); }, {"a.yaml:2: "});
   ExpectInputError([&] { Read("[a, b]: 1\n"); }, {"a.yaml:2: expected 'key: value'"});
 }
