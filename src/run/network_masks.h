@@ -58,7 +58,7 @@ class NetworkMasks final : public MaskSource {
   const std::filesystem::path path_;
   const size_t every_;
   const ImageSequence& sequence_;
-  const PinholeCamera& camera_;
+  const PinholeCamera camera_;
 };
 
 }  // namespace hullslam

@@ -204,8 +204,8 @@ TEST_F(FrameBuilderTest, MasksOfTheRightImageAddLines) {
   pair.masks = {Square("cup", 30, 160, 50), Square("book", 200, 60, 80)};
   pair.right_masks = {Square("book", 200 - kDisparity, 60, 80), Square("dog", 30, 40, 50),
                       Square("person", 250, 160, 60)};
-  FrameBuilder builder(StereoSensor(), DepthOptions(), FewFeatures(), DetectionOptions(),
-                       {"person"});
+  const Sensor stereo = StereoSensor();
+  FrameBuilder builder(stereo, DepthOptions(), FewFeatures(), DetectionOptions(), {"person"});
   const BuiltFrame built = builder.Build(pair, runner_);
   ASSERT_EQ(built.frame->detections.size(), 2u);
   EXPECT_TRUE(built.frame->detections[0].right_lines.empty());
