@@ -191,6 +191,11 @@ class LabelPngMasks : public MaskSource {
         by_number_[*number] = stem;
       }
     }
+    // Nothing tells which image files belong to if they are numbered from elsewhere, or if some
+    // only happen to be numbers.
+    if (by_number_.size() < stems_.size() || !by_number_.contains(0)) {
+      by_number_.clear();
+    }
   }
 
   std::string format() const override { return std::string(kLabelPngName); }
@@ -260,7 +265,7 @@ class LabelPngMasks : public MaskSource {
 
   MaskRequest request_;
   std::set<std::string> stems_;
-  std::map<size_t, std::string> by_number_;
+  std::map<size_t, std::string> by_number_;  // only if files are numbered from 0
   LabelClasses classes_;
 };
 

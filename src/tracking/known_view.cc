@@ -66,14 +66,15 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
 
 }  // namespace
 
-bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, KeyframeId reference,
-                 const PoseEstimate& estimate) {
+bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, FrameId first_of_session,
+                 KeyframeId reference, const PoseEstimate& estimate) {
   const View view = ViewOf(map, estimate);
   const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
   const double most_angle = kMostShift * sensor.camera.width / sensor.camera.fx;
   const auto is_known = [&](KeyframeId id) {
     const Keyframe& keyframe = map.keyframes().At(id);
-    return std::abs(frame.timestamp - keyframe.frame->timestamp) > kLeastTime &&
+    return keyframe.frame->id >= first_of_session &&
+           frame.timestamp - keyframe.frame->timestamp > kLeastTime &&
            ShowsTheSame(view, keyframe, keyframe.cam_from_world * world_from_cam, most_angle);
   };
   const std::vector<Covisible>& covisible = map.keyframes().At(reference).covisible;

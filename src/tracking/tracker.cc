@@ -136,6 +136,7 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
   const bool has_map = map != nullptr && !map->keyframes().empty();
+  first_frame_ = first_frame_.IsValid() ? first_frame_ : frame->id;
   Result result = has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
   result.report.map_revision = has_map ? map->revision() : 0;
   return result;
@@ -337,7 +338,8 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }
-  evidence.is_known_view = IsKnownView(map, sensor_, frame, tracking.reference, tracking.estimate);
+  evidence.is_known_view =
+      IsKnownView(map, sensor_, frame, first_frame_, tracking.reference, tracking.estimate);
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }

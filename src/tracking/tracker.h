@@ -136,6 +136,7 @@ class Tracker {
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
   int lost_frames_ = 0;               // since then
+  FrameId first_frame_;               // those of earlier sessions have smaller ids
   std::optional<double> relocalised_at_;  // s, time stamp of the last relocalised frame
   LastFrame last_;                        // has no frame before the first frame with a pose
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first

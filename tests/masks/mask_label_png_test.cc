@@ -127,15 +127,25 @@ TEST_F(LabelPngTest, TheNumbersOfAPaletteAreRead) {
 
 // As SAM 2 numbers them. What the numbers of images say comes before their order.
 TEST_F(LabelPngTest, FilesMayBeNumbered) {
+  std::filesystem::rename(Path("1.5.png"), Path("00000.png"));
   frames_ = {{"1.5", 0}, {"2.5", 1}, {"3.5", 12}};
-  std::filesystem::remove(Path("1.5.png"));
-  Write("00001.png", EncodePng(labels_));
-  EXPECT_TRUE(ReadFrame(0).is_missing);
-  EXPECT_EQ(ReadFrame(1).masks.size(), 2U);
+  EXPECT_EQ(ReadFrame(0).masks.size(), 2U);
+  EXPECT_TRUE(ReadFrame(1).is_missing);
   EXPECT_TRUE(ReadFrame(2).is_missing);
-  frames_ = {{"000002", 1}, {"000001", 7}};
+  frames_ = {{"000002", 0}, {"000000", 7}};
   EXPECT_TRUE(ReadFrame(0).is_missing);
   EXPECT_EQ(ReadFrame(1).masks.size(), 2U);
+}
+
+// Files from 1 may be those of the frames from 0, or lack the first one: one frame off, all masks
+// would be wrong.
+TEST_F(LabelPngTest, FilesThatAreNotNumberedFromZeroAreThoseOfNoFrame) {
+  std::filesystem::rename(Path("1.5.png"), Path("00001.png"));
+  ExpectRefusal({"no masks (label-png)", "there is '00001.png'"});
+  Write("00000.png", EncodePng(labels_));
+  EXPECT_FALSE(ReadFrame(1).is_missing);
+  Write("preview.png", EncodePng(labels_));
+  ExpectRefusal({"no masks (label-png)"});
 }
 
 TEST_F(LabelPngTest, IsDetected) {

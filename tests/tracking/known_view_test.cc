@@ -23,7 +23,8 @@ class KnownView : public testing::Test {
     }
     Frame frame = *view.frame;
     frame.timestamp = first.frame->timestamp + seconds_later;
-    return IsKnownView(made_.map, world_.sensor(), frame, KeyframeId(0), estimate);
+    return IsKnownView(made_.map, world_.sensor(), frame, first_of_session_, KeyframeId(0),
+                       estimate);
   }
   static Rigid3 Moved(double x, double z = 0.0) {
     return {Eigen::Quaterniond::Identity(), {x, 0.0, z}};
@@ -32,14 +33,20 @@ class KnownView : public testing::Test {
     return {ExpSo3({0.0, radians, 0.0}), Eigen::Vector3d::Zero()};
   }
 
+  FrameId first_of_session_ = FrameId(0);
   const SyntheticWorld world_;
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
 };
 
 TEST_F(KnownView, IsOneOfAnotherTime) {
   EXPECT_TRUE(IsKnown(Rigid3(), 60.0));
-  EXPECT_TRUE(IsKnown(Rigid3(), -60.0)) << "a session before may have another clock";
   EXPECT_FALSE(IsKnown(Rigid3(), 10.0)) << "keyframes along a path are as dense as ever";
+}
+
+TEST_F(KnownView, IsNoneOfAnEarlierSession) {
+  EXPECT_TRUE(IsKnown(Rigid3(), 60.0));
+  first_of_session_ = FrameId(50);
+  EXPECT_FALSE(IsKnown(Rigid3(), 60.0)) << "things may have changed";
 }
 
 // The points are 2 to 6 m away, half of them nearer than 4 m. 4 % of the width are 26 px, or 0.2 m
