@@ -124,7 +124,7 @@ DatasetHelp HelpOfStereoFolder(SensorKind /*sensor*/) {
           .settings =
               "default: camera.yaml in SEQUENCE; of rectified images with Camera.bf, or with "
               "both cameras as in files of ORB-SLAM2 (LEFT.K ...) and ORB-SLAM3 (Camera2.fx, "
-              "Stereo.T_c1_c2)",
+              "Stereo.T_c1_c2), Kalibr or ROS (left.yaml beside right.yaml)",
           .groundtruth = "default: groundtruth.txt in SEQUENCE"};
 }
 

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "settings/calibration_file.h"
 #include "settings/kalibr_camchain.h"
 #include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -55,19 +57,57 @@ Eigen::Quaterniond RectifyingRotation(const YamlMap& file, const std::string& ke
                     Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data()));
 }
 
-// Both cameras with the rotations that rectify them. The fourth column of RIGHT.P is minus the
-// baseline times the focal length.
-StereoCalibration PairOfOrb2(const YamlMap& file) {
-  StereoCalibration pair{CameraOf(file, "LEFT"), CameraOf(file, "RIGHT"), {}};
-  const Eigen::Quaterniond left = RectifyingRotation(file, "LEFT.R");
-  const Eigen::Quaterniond right = RectifyingRotation(file, "RIGHT.R");
-  const std::vector<double> p = file.Matrix("RIGHT.P", 12);
+// The motion between two cameras from the rotations that rectify them and the projection matrix of
+// the right one, whose fourth column is minus the baseline times the focal length.
+Rigid3 RightFromLeft(const Eigen::Quaterniond& left, const Eigen::Quaterniond& right,
+                     const YamlMap& file, const std::string& projection) {
+  const std::vector<double> p = file.Matrix(projection, 12);
   if (!(p[0] > 0.0)) {
-    file.Fail("RIGHT.P", "has no focal length");
+    file.Fail(projection, "has no focal length");
   }
-  pair.right_from_left.rotation = right.inverse() * left;
-  pair.right_from_left.translation = right.inverse() * Eigen::Vector3d(p[3] / p[0], 0.0, 0.0);
-  return pair;
+  return {right.inverse() * left, right.inverse() * Eigen::Vector3d(p[3] / p[0], 0.0, 0.0)};
+}
+
+StereoCalibration PairOfOrb2(const YamlMap& file) {
+  return {CameraOf(file, "LEFT"), CameraOf(file, "RIGHT"),
+          RightFromLeft(RectifyingRotation(file, "LEFT.R"), RectifyingRotation(file, "RIGHT.R"),
+                        file, "RIGHT.P")};
+}
+
+// ---- camera_info of ROS, a file for each camera
+
+constexpr const char* kRectification = "rectification_matrix";
+constexpr const char* kProjection = "projection_matrix";
+
+// The file of the right camera, whose name has "right" where that of the left one has "left"; empty
+// if it has not.
+fs::path RightOf(const fs::path& left) {
+  std::string name = left.filename().string();
+  const size_t side = name.rfind("left");
+  return side == std::string::npos ? fs::path()
+                                   : left.parent_path() / name.replace(side, 4, "right");
+}
+
+bool IsInfoPair(const fs::path& path, const YamlMap& file) {
+  return file.Has(kRectification) && file.Has(kProjection) && !RightOf(path).empty();
+}
+
+StereoCalibration PairOfInfos(const fs::path& path, const YamlMap& left,
+                              const PinholeCamera& camera) {
+  const fs::path other = RightOf(path);
+  if (!fs::is_regular_file(other)) {
+    left.Fail(kProjection, fmt::format("is of the left camera, expected {} with the right one",
+                                       ShowText(other.string())));
+  }
+  const YAML::Node root = ReadYaml(other);
+  const YamlMap right(other, "a camera_info of ROS", root);
+  const std::optional<RecognisedCalibration> found = RecogniseCalibration(other, root);
+  if (!found) {
+    right.Fail("camera_matrix", "is not given");
+  }
+  return {camera, found->calibration.camera,
+          RightFromLeft(RectifyingRotation(left, kRectification),
+                        RectifyingRotation(right, kRectification), right, kProjection)};
 }
 
 // ---- ORB-SLAM3
@@ -116,7 +156,8 @@ bool IsStereoKey(std::string_view key) {
 
 bool HasRightCamera(const fs::path& file) {
   const YamlMap settings(file, "settings");
-  return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings);
+  return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings) ||
+         IsInfoPair(file, settings);
 }
 
 std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {
@@ -129,6 +170,9 @@ std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const Pinh
   }
   if (IsCamchain(settings)) {
     return ReadCamchainPair(settings);
+  }
+  if (IsInfoPair(file, settings)) {
+    return PairOfInfos(file, settings, camera);
   }
   return camera.IsDistorted() ? std::optional(TwinsOf(camera)) : std::nullopt;
 }

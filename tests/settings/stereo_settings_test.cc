@@ -121,6 +121,62 @@ TEST_F(StereoSettings, ARectifiedCameraNeedsNone) {
   EXPECT_EQ(Read("Camera.fx: 500\nCamera.fy: 500\nCamera.cx: 320\nCamera.cy: 240\n"), nullptr);
 }
 
+// The pair above in the files that ROS's camera_calibration writes.
+std::string InfoOf(const std::string& camera, const std::string& distortion,
+                   const std::string& rectification, const std::string& fourth) {
+  return "image_width: 752\nimage_height: 480\ncamera_name: narrow_stereo\ncamera_matrix:\n"
+         "  rows: 3\n  cols: 3\n  data: [" +
+         camera +
+         "]\ndistortion_model: plumb_bob\n"
+         "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [" +
+         distortion +
+         "]\n"
+         "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [" +
+         rectification +
+         "]\n"
+         "projection_matrix:\n  rows: 3\n  cols: 4\n"
+         "  data: [435.2, 0, 367.4, " +
+         fourth + ", 0, 435.2, 252.2, 0, 0, 0, 1, 0]\n";
+}
+
+TEST_F(StereoSettings, TheCameraInfosOfRosAreAPair) {
+  const auto left = folder_.Write(
+      "left.yaml",
+      InfoOf(
+          "458.654, 0, 367.215, 0, 457.296, 248.375, 0, 0, 1", "-0.2834, 0.0739, 0.00019, 0, 0",
+          "0.999966347530033, -0.001422739138722922, 0.008079580483432283, 0.001365741834644127, "
+          "0.9999741760894847, 0.007055629199258132, -0.008089410156878961, "
+          "-0.007044357138835809, 0.9999424675829176",
+          "0"));
+  const auto read = [&] { return MakeRectifier(left, ReadSettings(left).camera); };
+  EXPECT_TRUE(HasRightCamera(left));
+  ExpectInputError(read, {"left.yaml:17: projection_matrix is of the left camera", "right.yaml"});
+  const std::string right =
+      InfoOf("457.587, 0, 379.999, 0, 456.134, 255.238, 0, 0, 1", "-0.28368, 0.0745, -0.0001, 0, 0",
+             "0.9999633526194376, -0.003625811871560086, 0.007755443660172947, "
+             "0.003680398547259526, 0.9999684752771629, -0.007035845251224894, "
+             "-0.007729688520722713, 0.007064130529506649, 0.999945173484644",
+             "-47.90639384423901");
+  folder_.Write("right.yaml", right);
+  const auto rectifier = read();
+  ASSERT_NE(rectifier, nullptr);
+  EXPECT_NEAR(rectifier->camera().bf / rectifier->camera().fx, 0.11008, 1e-4);
+  EXPECT_NEAR(rectifier->rectified_from_left().rotation.toRotationMatrix()(0, 2), 0.00808, 1e-4);
+
+  folder_.Write("right.yaml", "image_width: 752\n");
+  ExpectInputError(read, {"right.yaml", "camera_matrix is not given"});
+  folder_.Write("right.yaml", "rectification_matrix: 1\n" + right.substr(0, right.find("rectif")));
+  ExpectInputError(read, {"right.yaml", "rectification_matrix"});
+}
+
+// A camera_info of one camera whose name tells no side.
+TEST_F(StereoSettings, TheCameraInfoOfOneCameraIsNone) {
+  const auto file =
+      folder_.Write("head.yaml", InfoOf("458, 0, 367, 0, 457, 248, 0, 0, 1", "0, 0, 0, 0, 0",
+                                        "1, 0, 0, 0, 1, 0, 0, 0, 1", "0"));
+  EXPECT_FALSE(HasRightCamera(file));
+}
+
 TEST_F(StereoSettings, BrokenFilesAreRefusedWithLineAndKey) {
   const auto expect = [&](const std::string& text, const std::vector<std::string>& parts) {
     ExpectInputError([&] { Read(text); }, parts);
