@@ -42,13 +42,14 @@ bool DepthsAgree(const Map& corrected, const Sensor& sensor, const Loop& loop) {
 
 // The number of landmarks that the query must find at the candidate. Frames so near in time may be
 // expected to show the same place; others may only look alike, and errors are three times as large
-// where images are far apart, so three times as many are needed.
+// where images are far apart, so three times as many are needed. They always are without depth,
+// where few landmarks may agree at a wrong scale.
 size_t LandmarksNeededForJoin(const Map& corrected, const Sensor& sensor, const Loop& loop,
                               size_t least) {
   constexpr uint32_t kNearFrames = 5;
   const auto [first, last] = std::minmax(FrameIdOf(corrected, loop.query).value,
                                          FrameIdOf(corrected, loop.candidate).value);
-  if (last - first > kNearFrames) {
+  if (last - first > kNearFrames || sensor.IsMonocular()) {
     return 3 * least;
   }
   return IsConfirmedByNeighbour(corrected, sensor, loop, least) ? least : 2 * least;

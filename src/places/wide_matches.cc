@@ -51,12 +51,17 @@ std::vector<KeyframeId> KeyframesForWideMatches(const Map& map, const Frame& fra
   return chosen;
 }
 
+std::vector<Match> MatchWidely(const FrameFeatures& queries, std::span<const uint32_t> indices,
+                               const FrameFeatures& features) {
+  return MatchByDescriptor(queries, indices, features,
+                           {.max_distance = kMaxWideDistance, .max_ratio = kMaxWideRatio});
+}
+
 std::vector<FoundLandmark> MatchLandmarksOf(const Map& map, const Frame& frame, KeyframeId id) {
   const Keyframe& keyframe = map.keyframes().At(id);
   std::vector<FoundLandmark> found;
-  for (const Match& match : MatchByDescriptor(
-           keyframe.frame->features, IndicesOfValid(keyframe.landmarks), frame.features,
-           {.max_distance = kMaxWideDistance, .max_ratio = kMaxWideRatio})) {
+  for (const Match& match :
+       MatchWidely(keyframe.frame->features, IndicesOfValid(keyframe.landmarks), frame.features)) {
     found.push_back({match.keypoint, keyframe.landmarks[match.query]});
   }
   return found;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
+#include "matching/match.h"
 #include "places/landmark_search.h"
 
 namespace hullslam {
@@ -17,6 +20,11 @@ namespace hullslam {
 // `left_out` are left out.
 std::vector<KeyframeId> KeyframesForWideMatches(const Map& map, const Frame& frame,
                                                 IslandId left_out = IslandId());
+
+// The keypoints of `queries` that are listed in `indices` (Match::query) and the keypoints of
+// `features` that have nearly the same descriptors.
+std::vector<Match> MatchWidely(const FrameFeatures& queries, std::span<const uint32_t> indices,
+                               const FrameFeatures& features);
 
 // The landmarks of a keyframe that are found in the frame by their descriptors alone: each is
 // compared with all keypoints.

@@ -7,6 +7,7 @@
 #include "frame/wide_sensor.h"
 #include "places/depth_agreement.h"
 #include "places/similar_places.h"
+#include "tracking/pair_votes.h"
 
 namespace hullslam {
 namespace {
@@ -26,6 +27,9 @@ constexpr int kFarReturn = 3;
 // The largest share of depth samples that may be seen past. Of wrong poses it was up to a quarter,
 // of right ones at most 9 % with the depth of a phone.
 constexpr double kMostPast = 0.1;
+// So many pairs must confirm a pose. With one, 8 of 647 poses of freiburg1_xyz (every 20th and 30th
+// image) are more than 50 mm off, with two none.
+constexpr int kLeastPairs = 2;
 
 // Whether so few landmarks are found among images that are far apart that the place may be another.
 bool CanBeChance(const Frame& frame, const Map& map, const TrackingContext& context,
@@ -54,6 +58,17 @@ bool IsContradicted(const Frame& frame, const Map& map, const TrackingContext& c
   return agreement.past > kMostPast * agreement.compared();
 }
 
+// Whether pairs of images do not confirm a pose among images that are far apart. Without depth
+// nothing but the landmarks has been compared, and few of these may agree with a wrong pose.
+bool IsDoubted(const Frame& frame, const Map& map, const TrackingContext& context,
+               const LocalTracking& tracking) {
+  if (!context.is_wide || !context.sensor.IsMonocular()) {
+    return false;
+  }
+  const PairVotes votes = VoteByPairs(frame, map, context, tracking);
+  return votes.agree < kLeastPairs || votes.contradict > votes.agree;
+}
+
 }  // namespace
 
 PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingContext& context,
@@ -77,7 +92,8 @@ PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingC
     if (inliers < context.options.min_inliers ||
         tracking.estimate.corner_sigma > kMostCornerSigma ||
         (context.is_wide && CanBeChance(frame, map, context, tracking)) ||
-        (is_new_place && IsContradicted(frame, map, context, tracking))) {
+        (is_new_place && IsContradicted(frame, map, context, tracking)) ||
+        IsDoubted(frame, map, context, tracking)) {
       search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);
       continue;
     }

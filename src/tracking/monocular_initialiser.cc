@@ -14,6 +14,7 @@
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
+#include "tracking/pixel_pairs.h"
 #include "tracking/shutter_correction.h"
 #include "util/random_seed.h"
 #include "util/reached_by.h"
@@ -52,24 +53,6 @@ double TypicalShift(double share, const Frame& from, const Frame& to,
         (position(from.features, match.query) - position(to.features, match.keypoint)).norm());
   }
   return static_cast<double>(ReachedBy(share, std::move(shifts)));
-}
-
-double SigmaOf(const Keypoint& keypoint, const ScaleLevels& levels) {
-  return static_cast<double>(levels.scale[static_cast<size_t>(keypoint.level)]);
-}
-
-std::vector<PixelPair> MakePairs(const Frame& a, const Frame& b, const std::vector<Match>& matches,
-                                 const ScaleLevels& levels) {
-  std::vector<PixelPair> pairs;
-  for (const Match& match : matches) {
-    const Keypoint& in_a = a.features.keypoints[match.query];
-    const Keypoint& in_b = b.features.keypoints[match.keypoint];
-    pairs.push_back({.a = in_a.undistorted.cast<double>(),
-                     .b = in_b.undistorted.cast<double>(),
-                     .sigma_a = SigmaOf(in_a, levels),
-                     .sigma_b = SigmaOf(in_b, levels)});
-  }
-  return pairs;
 }
 
 InitialisationFailure ToInitialisationFailure(TwoViewFailure failure) {
@@ -268,8 +251,9 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   if (TypicalShift(forward_share, *first, *frame, matches) < least_shift) {
     return fail(InitialisationFailure::kTooLittleParallax);
   }
-  const TwoViews motion =
-      EstimateTwoViews(sensor_.camera, MakePairs(*first, *frame, matches, sensor_.levels), options);
+  const TwoViews motion = EstimateTwoViews(
+      sensor_.camera, MakePixelPairs(first->features, frame->features, matches, sensor_.levels),
+      options);
   if (!motion.ok()) {
     return fail(ToInitialisationFailure(motion.failure));
   }

@@ -224,17 +224,23 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
     const TrackingFailure reason = WhyLost(*frame, Context(), last_, search);
     return Lose(std::move(frame), map, reason);
   }
+  return Accept(std::move(*found), frame, map, mapper);
+}
+
+// The result of a frame that was found. `as_read` is the frame before it was corrected.
+Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>& as_read,
+                                const Map& map, const MapperStatus& mapper) {
   if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
-    KeepEarly(frame, true);
+    KeepEarly(as_read, true);
   }
   lost_since_.reset();
   lost_frames_ = 0;
-  if (found->is_relocalised) {
-    relocalised_at_ = frame->timestamp;
+  if (found.is_relocalised) {
+    relocalised_at_ = as_read->timestamp;
   }
   initialiser_.Forget();
-  frame = found->corrected.frame;
-  const LocalTracking& tracking = found->tracking;
+  std::shared_ptr<const Frame> frame = std::move(found.corrected.frame);
+  const LocalTracking& tracking = found.tracking;
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
   }
@@ -242,11 +248,11 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  if (!is_localizing_only_ && (NeedsKeyframe(*frame, map, tracking, mapper) || found->is_wide)) {
+  if (!is_localizing_only_ && (NeedsKeyframe(*frame, map, tracking, mapper) || found.is_wide)) {
     result.message = MakeRequest(frame, tracking, pose);
   }
-  has_had_wide_steps_ |= found->is_wide;
-  is_wide_ = found->is_wide || (is_wide_ && result.message);
+  has_had_wide_steps_ |= found.is_wide;
+  is_wide_ = found.is_wide || (is_wide_ && result.message);
   result.report = {.tracked = {.frame = frame->id,
                                .timestamp = frame->timestamp,
                                .state = TrackingState::kTracked,
@@ -263,8 +269,8 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .pose = pose,
            .reference = tracking.reference,
            .cam_from_world = estimate.cam_from_world,
-           .motion = found->motion,
-           .velocity = found->corrected.velocity};
+           .motion = found.motion,
+           .velocity = found.corrected.velocity};
   return result;
 }
 

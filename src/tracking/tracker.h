@@ -84,10 +84,7 @@ class Tracker {
   TrackingContext WideContext() const {
     return {wide_sensor_, options_, object_options_, object_index_, seed_, true};
   }
-  // Without depth nothing could contradict a wrong pose.
-  bool MayMatchWidely() const {
-    return options_.wide_matches && !sensor_.IsMonocular() && !is_localizing_only_;
-  }
+  bool MayMatchWidely() const { return options_.wide_matches && !is_localizing_only_; }
   Result Initialize(std::shared_ptr<const Frame> frame);
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
   void KeepEarly(const std::shared_ptr<const Frame>& frame, bool is_tracked);
@@ -108,6 +105,8 @@ class Tracker {
                                          PoseSearch& search) const;
   std::optional<Found> FindWidely(const std::shared_ptr<const Frame>& as_read, const Map& map,
                                   PoseSearch& search) const;
+  Result Accept(Found found, const std::shared_ptr<const Frame>& as_read, const Map& map,
+                const MapperStatus& mapper);
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
   bool IsTiny(const Map& map) const;

@@ -193,6 +193,34 @@ TEST(ConfirmedPose, LandmarksOnANarrowStripDoNotConfirmIt) {
   EXPECT_EQ(refused.most_unconfirmed, 40);
 }
 
+// The map of a camera without depth may have bent. Images that are far apart then say so, while
+// the landmarks fit.
+TEST_F(ConfirmedPoseTest, WithoutDepthPairsOfImagesConfirmWideMatches) {
+  const SyntheticView view = world_.Observe(30);
+  const auto found = [&](SensorKind kind, bool is_wide, double turned) {
+    SyntheticMap made = MakeSyntheticMap(world_, {0, 20, 40, 60});
+    for (uint32_t i = 0; i < 4; ++i) {
+      made.map.SetPose(KeyframeId(i), Rigid3(ExpSo3({0.0, turned, 0.0}), Eigen::Vector3d::Zero()) *
+                                          made.map.keyframes().At(KeyframeId(i)).cam_from_world);
+    }
+    Sensor sensor = world_.sensor();
+    sensor.kind = kind;
+    TheScript().first = Start(0.0, 50);
+    TheScript().first->cam_from_world = SyntheticWorld::CamFromWorld(30);
+    TheScript().first->landmarks.resize(view.frame->features.size());
+    LastFrame last;
+    last.reference = KeyframeId(1);
+    const TrackingContext context{sensor, options_, objects_, index_, 0, is_wide};
+    return FindConfirmedPose(*view.frame, made.map, context, last,
+                             std::array<PoseSource*, 1>{&First})
+        .found.has_value();
+  };
+  EXPECT_TRUE(found(SensorKind::kMonocular, true, 0.0));
+  EXPECT_FALSE(found(SensorKind::kMonocular, true, 0.05));
+  EXPECT_TRUE(found(SensorKind::kMonocular, false, 0.05));
+  EXPECT_TRUE(found(SensorKind::kRgbd, true, 0.05));
+}
+
 TEST_F(ConfirmedPoseTest, TellsHowManyLandmarksAnUnconfirmedPoseHad) {
   TheScript().first = Start(60.0, 100);
   const PoseSearch search = Search();

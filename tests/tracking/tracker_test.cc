@@ -986,6 +986,20 @@ TEST_F(RelocalisingTracker, IsFoundElsewhereWithoutWordsByAllDescriptors) {
   EXPECT_FALSE(tracker_.HasWideSteps());
 }
 
+TEST_F(RelocalisingTracker, IsFoundElsewhereByAllDescriptorsWithoutDepthToo) {
+  Sensor monocular = world_.sensor();
+  monocular.kind = SensorKind::kMonocular;
+  Tracker tracker(monocular, TrackingOptions(), ObjectOptions(), 1);
+  ASSERT_EQ(tracker.Process(Look(1000, 0.2), map_, kIdle).report.tracked.state,
+            TrackingState::kTracked);
+  const auto frame = Look(1010, 0.45);
+  frame->words.clear();
+  const Tracker::Result result = tracker.Process(frame, map_, kIdle);
+  ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  ExpectNear(result.report.tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.01);
+  EXPECT_TRUE(tracker.HasWideSteps());
+}
+
 TEST_F(RelocalisingTracker, StaysLostElsewhereWithoutWordsIfItMayNotMatchWidely) {
   TrackingOptions options;
   options.wide_matches = false;

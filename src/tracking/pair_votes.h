@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/map/map.h"
+#include "tracking/local_map_tracking.h"
+#include "tracking/tracking_context.h"
+
+namespace hullslam {
+
+// What pairs of images say of the pose of a frame, without the landmarks of the map: the number of
+// keyframes from which the motion to the frame has the rotation that their poses say, and of those
+// from which it has another one. A pair that gives no motion does not vote.
+struct PairVotes {
+  int agree = 0;
+  int contradict = 0;
+};
+
+// The votes of the keyframes of the place at which the frame was tracked. The motion of a pair is
+// that of EstimateTwoViews, from matches without a prediction. Some milliseconds per keyframe.
+PairVotes VoteByPairs(const Frame& frame, const Map& map, const TrackingContext& context,
+                      const LocalTracking& tracking);
+
+}  // namespace hullslam
