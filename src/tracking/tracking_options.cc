@@ -29,9 +29,10 @@ void TrackingOptions::Bind(OptionTable& options) {
             "motion; if not, they double once");
   scope.Add(
       "wide_matches", &wide_matches,
-      "with depth, a lost frame is also sought by matches without words or a prediction, as "
-      "in recordings whose images are far apart; at the end, lost frames and parts of the map "
-      "are joined in the same way");
+      "a lost frame is also sought by matches without words or a prediction, as in recordings "
+      "whose "
+      "images are far apart (without depth, two pairs of images must agree with its rotation); at "
+      "the end, lost frames and parts of the map are joined in the same way");
   scope.Add("begin_islands", &begin_islands,
             "a camera that stays lost begins a new part of the map; if not, only while the map has "
             "at most five keyframes");

@@ -61,9 +61,10 @@ void PresetRuns::RunAllPrograms(const std::string& preset) const {
   EXPECT_EQ(Summary()["provenance"]["preset"], preset);
   EXPECT_LT(Summary()["trajectory"]["ate_rmse_m"], 0.02);
 
-  const ProgramResult known = Run(
-      "map_objects", {"--preset", preset, "--masks", Masks(), "--poses",
-                      desk_.path() / "groundtruth.txt", "--min-distance", "0.02", "--overwrite"});
+  const ProgramResult known =
+      RunProgram("hullslam", {"map-objects", desk_.path(), "--preset", preset, "--masks", Masks(),
+                              "--poses", desk_.path() / "groundtruth.txt", "--min-distance", "0.02",
+                              "--overwrite", "--output", folder_.path() / "out"});
   if (has_objects) {
     ASSERT_EQ(known.exit_code, 0) << known.errors;
     EXPECT_EQ(Summary()["provenance"]["preset"], preset);
