@@ -11,6 +11,10 @@ _Values = dict[str, Any]
 class _Camera:
     RGB: bool
     """colour images that the library receives from memory are RGB (else BGR) (true or false (1 or 0); default false)"""
+    alpha: float
+    """share of DoubleSphere and EUCM (a number from 0 to 1; default 0)"""
+    beta: float
+    """shape of EUCM (a number from 0.001 to 1000; default 1)"""
     bf: float
     """baseline of the virtual stereo camera (m) times fx (px) (a number from 0.001 to 1e+06; default 40)"""
     cx: float
@@ -45,10 +49,12 @@ class _Camera:
     """rolling shutter: an image is exposed row after row or column after column (one of: rows, columns; default rows)"""
     readout_time: float
     """rolling shutter: time from the top row of an image to the bottom row (columns: from left to right), s; negative: the other way round; 0: all at once (a number from -0.1 to 0.1; default 0)"""
-    type: Literal["PinHole", "KannalaBrandt8"]
-    """lens (one of: PinHole, KannalaBrandt8; default PinHole)"""
+    type: Literal["PinHole", "KannalaBrandt8", "DoubleSphere", "EUCM"]
+    """lens (one of: PinHole, KannalaBrandt8, DoubleSphere, EUCM; default PinHole)"""
     width: int
     """width of the images, px (an integer from 16 to 16384; default 640)"""
+    xi: float
+    """distance of the spheres of DoubleSphere (a number from -0.9 to 1; default 0)"""
 
 class _ORBextractor:
     iniThFAST: int
@@ -346,7 +352,7 @@ class _tracking:
     remove_dynamic: bool
     """remove the keypoints on the masks of dynamic classes (true or false (1 or 0); default true)"""
     wide_matches: bool
-    """with depth, a lost frame is also sought by matches without words or a prediction, as in recordings whose images are far apart; at the end, lost frames and parts of the map are joined in the same way (true or false (1 or 0); default true)"""
+    """a lost frame is also sought by matches without words or a prediction, as in recordings whose images are far apart (without depth, two pairs of images must agree with its rotation); at the end, lost frames and parts of the map are joined in the same way (true or false (1 or 0); default true)"""
     wide_search: bool
     """search windows grow with the width of the image and, if needed, up to the expected motion; if not, they double once (true or false (1 or 0); default true)"""
 

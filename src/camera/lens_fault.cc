@@ -9,13 +9,18 @@
 #include <numbers>
 #include <optional>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 
 namespace hullslam {
 namespace {
 
 // "Camera.k1 is '-5': ", for the coefficient that moves a raw pixel most.
 std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
+  if (const WideModel* const model = FindWideModel(camera.lens);
+      model != nullptr && model->coefficients.front().field != &PinholeCamera::k1) {
+    const WideModel::Coefficient& last = model->coefficients.back();
+    return "Camera." + std::string(last.name) + " is '" + PrintNumber(camera.*last.field) + "': ";
+  }
   const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
   struct Term {
     const char* key;
@@ -86,21 +91,43 @@ std::string FindBrownFault(const PinholeCamera& camera) {
   return {};
 }
 
-std::string FindFisheyeFault(const PinholeCamera& camera) {
-  struct Other {
-    const char* key;
-    double coefficient;
+// A coefficient that the lens does not have.
+std::string FindForeignCoefficient(const PinholeCamera& camera) {
+  constexpr std::array<WideModel::Coefficient, 11> kAll = {{{"p1", &PinholeCamera::p1},
+                                                            {"p2", &PinholeCamera::p2},
+                                                            {"k5", &PinholeCamera::k5},
+                                                            {"k6", &PinholeCamera::k6},
+                                                            {"k1", &PinholeCamera::k1},
+                                                            {"k2", &PinholeCamera::k2},
+                                                            {"k3", &PinholeCamera::k3},
+                                                            {"k4", &PinholeCamera::k4},
+                                                            {"xi", &PinholeCamera::xi},
+                                                            {"alpha", &PinholeCamera::alpha},
+                                                            {"beta", &PinholeCamera::beta}}};
+  const WideModel* const model = FindWideModel(camera.lens);
+  const auto is_of_lens = [&](const WideModel::Coefficient& one) {
+    if (model == nullptr) {
+      return one.field != &PinholeCamera::xi && one.field != &PinholeCamera::alpha &&
+             one.field != &PinholeCamera::beta;
+    }
+    return std::any_of(model->coefficients.begin(), model->coefficients.end(),
+                       [&](const auto& own) { return own.field == one.field; });
   };
-  const std::array<Other, 4> others = {{{"Camera.p1", camera.p1},
-                                        {"Camera.p2", camera.p2},
-                                        {"Camera.k5", camera.k5},
-                                        {"Camera.k6", camera.k6}}};
-  for (const Other& other : others) {
-    if (other.coefficient != 0.0) {
-      return std::string(other.key) + " is '" + PrintNumber(other.coefficient) +
-             "', expected 0: a fisheye lens (KannalaBrandt8) has only k1 to k4";
+  for (const WideModel::Coefficient& one : kAll) {
+    const double unused = PinholeCamera().*one.field;
+    if (!is_of_lens(one) && camera.*one.field != unused) {
+      return "Camera." + std::string(one.name) + " is '" + PrintNumber(camera.*one.field) +
+             "', expected " + PrintNumber(unused) + ": " +
+             (model == nullptr ? "a PinHole has no such coefficient (Camera.type)"
+                               : "a fisheye lens (" + std::string(model->type) + ") has only " +
+                                     std::string(model->coefficients.front().name) + " to " +
+                                     std::string(model->coefficients.back().name));
     }
   }
+  return {};
+}
+
+std::string FindFisheyeFault(const PinholeCamera& camera) {
   // A ray cannot be more than 180 degrees from the axis, so the image must not go on there.
   const double behind = RadiusOfAngle(camera, std::numbers::pi);
   const double nearest_side =
@@ -140,6 +167,9 @@ std::string PrintNumber(double value) {
 }
 
 std::string FindLensFault(const PinholeCamera& camera) {
+  if (std::string fault = FindForeignCoefficient(camera); !fault.empty() || !camera.IsDistorted()) {
+    return fault;
+  }
   return camera.IsFisheye() ? FindFisheyeFault(camera) : FindBrownFault(camera);
 }
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "camera/brown.h"
-#include "camera/kannala_brandt.h"
 #include "camera/lens_fault.h"
+#include "camera/wide_lens.h"
 
 namespace hullslam {
 namespace {
@@ -17,6 +17,9 @@ constexpr double kMostFocalLength = 1e5;
 constexpr double kMostPrincipalPoint = 1e5;
 constexpr double kLeastBaselineTimesFx = 1e-3;  // m px
 constexpr double kMostBaselineTimesFx = 1e6;
+const Range kXi = Range::Between(-0.9, 1.0);
+const Range kAlpha = Range::Between(0.0, 1.0);
+const Range kBeta = Range::Between(1e-3, 1e3);
 
 std::string Describe(const char* key, double value, const Range& range) {
   return range.Contains(value) ? std::string()
@@ -25,7 +28,7 @@ std::string Describe(const char* key, double value, const Range& range) {
 }
 
 LensPoint DistortNormalized(const PinholeCamera& camera, const Eigen::Vector2d& point) {
-  return camera.IsFisheye() ? DistortKannalaBrandt(camera, point) : DistortBrown(camera, point);
+  return camera.IsFisheye() ? DistortWide(camera, point) : DistortBrown(camera, point);
 }
 
 Eigen::Vector2d Normalized(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
@@ -52,7 +55,10 @@ void PinholeCamera::Bind(OptionTable& options) {
   scope.Add("k4", &k4, Range::Any(), "radial divisor; the fourth of a fisheye");
   scope.Add("k5", &k5, Range::Any(), "radial divisor");
   scope.Add("k6", &k6, Range::Any(), "radial divisor");
-  scope.AddEnum("type", &lens, {"PinHole", "KannalaBrandt8"}, "lens");
+  scope.AddEnum("type", &lens, {"PinHole", "KannalaBrandt8", "DoubleSphere", "EUCM"}, "lens");
+  scope.Add("xi", &xi, kXi, "distance of the spheres of DoubleSphere");
+  scope.Add("alpha", &alpha, kAlpha, "share of DoubleSphere and EUCM");
+  scope.Add("beta", &beta, kBeta, "shape of EUCM");
   scope.Add("width", &width, Range::Between(16, 16384), "width of the images, px");
   scope.Add("height", &height, Range::Between(16, 16384), "height of the images, px");
   scope.Add("bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
@@ -81,7 +87,7 @@ Eigen::Vector2d PinholeCamera::Undistort(const Eigen::Vector2d& raw) const {
   }
   const Eigen::Vector2d target = Normalized(*this, raw);
   const Eigen::Vector2d point =
-      IsFisheye() ? UndistortKannalaBrandt(*this, target) : UndistortBrown(*this, target);
+      IsFisheye() ? UndistortWide(*this, target) : UndistortBrown(*this, target);
   return {fx * point.x() + cx, fy * point.y() + cy};
 }
 
@@ -92,7 +98,7 @@ bool PinholeCamera::SeesRaw(const Eigen::Vector2d& raw) const {
 }
 
 double PinholeCamera::FoldRadius() const {
-  return std::min(fx, fy) * (IsFisheye() ? FoldOfKannalaBrandt(*this) : FoldOfBrown(*this));
+  return std::min(fx, fy) * (IsFisheye() ? FoldOfWide(*this) : FoldOfBrown(*this));
 }
 
 PinholeCamera::Bounds PinholeCamera::UndistortedBounds() const {
@@ -129,7 +135,7 @@ std::string PinholeCamera::FindFault() const {
     double value;
     Range range;
   };
-  const std::array<Number, 13> numbers = {
+  const std::array<Number, 16> numbers = {
       {{"Camera.fx", fx, focal_length},
        {"Camera.fy", fy, focal_length},
        {"Camera.cx", cx, principal_point},
@@ -142,14 +148,17 @@ std::string PinholeCamera::FindFault() const {
        {"Camera.p2", p2, Range::Any()},
        {"Camera.k4", k4, Range::Any()},
        {"Camera.k5", k5, Range::Any()},
-       {"Camera.k6", k6, Range::Any()}}};
+       {"Camera.k6", k6, Range::Any()},
+       {"Camera.xi", xi, kXi},
+       {"Camera.alpha", alpha, kAlpha},
+       {"Camera.beta", beta, kBeta}}};
   for (const Number& number : numbers) {
     std::string fault = Describe(number.key, number.value, number.range);
     if (!fault.empty()) {
       return fault;
     }
   }
-  return IsDistorted() ? FindLensFault(*this) : std::string();
+  return FindLensFault(*this);
 }
 
 }  // namespace hullslam

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "bags/cdr_writer.h"
+#include "camera/wide_lens.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 
@@ -120,10 +121,13 @@ namespace {
 
 void PutLens(const PinholeCamera& camera, CdrWriter& message) {
   std::vector<double> numbers = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
-  const char* model = "plumb_bob";
-  if (camera.IsFisheye()) {
-    model = "equidistant";
-    numbers = {camera.k1, camera.k2, camera.k3, camera.k4};
+  std::string_view model = "plumb_bob";
+  if (const WideModel* const wide = FindWideModel(camera.lens)) {
+    model = wide->names.front();
+    numbers.clear();
+    for (const WideModel::Coefficient& one : wide->coefficients) {
+      numbers.push_back(camera.*one.field);
+    }
   } else if (camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0) {
     model = "rational_polynomial";
     numbers.insert(numbers.end(), {camera.k4, camera.k5, camera.k6});

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 #include "geometry/polyline.h"
 
 namespace hullslam {

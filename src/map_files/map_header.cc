@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <string>
 #include <utility>
 
+#include "camera/wide_lens.h"
 #include "map_files/map_records.h"
 
 namespace hullslam {
@@ -13,6 +15,9 @@ constexpr uint8_t kStereo = 3;
 // Added to the number of the sensor if the camera has more than Brown's five coefficients. Then
 // these follow the camera.
 constexpr uint8_t kMoreOfLens = 16;
+// Added in its place for a lens that was not known when the format began. Then its type and its
+// coefficients follow the camera.
+constexpr uint8_t kNamedLens = 32;
 
 uint8_t NumberOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? kMonocular
@@ -32,8 +37,30 @@ void WriteCamera(const PinholeCamera& camera, ByteWriter& out) {
   out.Put(static_cast<int32_t>(camera.height));
 }
 
-bool HasMoreOfLens(const PinholeCamera& camera) {
-  return camera.IsFisheye() || camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0;
+uint8_t LensFlagOf(const PinholeCamera& camera) {
+  const bool is_known =
+      camera.lens == LensModel::kBrown || camera.lens == LensModel::kKannalaBrandt;
+  return !is_known ? kNamedLens
+         : camera.IsFisheye() || camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0
+             ? kMoreOfLens
+             : 0;
+}
+
+void WriteNamedLens(const PinholeCamera& camera, ByteWriter& out) {
+  const WideModel& model = *FindWideModel(camera.lens);
+  out.PutText(std::string(model.type));
+  for (const WideModel::Coefficient& one : model.coefficients) {
+    out.Put(camera.*one.field);
+  }
+}
+
+void ReadNamedLens(ByteReader& in, PinholeCamera& camera) {
+  const WideModel* const model = FindWideModel(in.GetText());
+  in.Require(model != nullptr, "has a lens that this version does not know");
+  camera.lens = model->lens;
+  for (const WideModel::Coefficient& one : model->coefficients) {
+    camera.*one.field = in.GetFinite(kMostMapNumber);
+  }
 }
 
 void WriteMoreOfLens(const PinholeCamera& camera, ByteWriter& out) {
@@ -43,7 +70,7 @@ void WriteMoreOfLens(const PinholeCamera& camera, ByteWriter& out) {
   }
 }
 
-PinholeCamera ReadCamera(bool has_more_of_lens, ByteReader& in) {
+PinholeCamera ReadCamera(uint8_t lens_flag, ByteReader& in) {
   PinholeCamera camera;
   for (double* number : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.k1, &camera.k2,
                          &camera.p1, &camera.p2, &camera.k3, &camera.bf}) {
@@ -52,7 +79,9 @@ PinholeCamera ReadCamera(bool has_more_of_lens, ByteReader& in) {
   constexpr int kMostSide = 65'536;  // px; the options of the camera have a smaller bound
   camera.width = in.Get<int32_t>();
   camera.height = in.Get<int32_t>();
-  if (has_more_of_lens) {
+  if (lens_flag == kNamedLens) {
+    ReadNamedLens(in, camera);
+  } else if (lens_flag == kMoreOfLens) {
     camera.lens = in.GetFlag() ? LensModel::kKannalaBrandt : LensModel::kBrown;
     for (double* number : {&camera.k4, &camera.k5, &camera.k6}) {
       *number = in.GetFinite(kMostMapNumber);
@@ -68,11 +97,12 @@ PinholeCamera ReadCamera(bool has_more_of_lens, ByteReader& in) {
 
 void WriteHeader(const MapHeader& header, ByteWriter& out) {
   const PinholeCamera& camera = header.settings.camera;
-  const bool has_more_of_lens = HasMoreOfLens(camera);
-  out.Put(static_cast<uint8_t>(NumberOf(header.settings.sensor) +
-                               (has_more_of_lens ? kMoreOfLens : 0)));
+  const uint8_t lens_flag = LensFlagOf(camera);
+  out.Put(static_cast<uint8_t>(NumberOf(header.settings.sensor) + lens_flag));
   WriteCamera(camera, out);
-  if (has_more_of_lens) {
+  if (lens_flag == kNamedLens) {
+    WriteNamedLens(camera, out);
+  } else if (lens_flag == kMoreOfLens) {
     WriteMoreOfLens(camera, out);
   }
   out.Put(static_cast<int32_t>(header.settings.level_count));
@@ -93,14 +123,16 @@ void WriteHeader(const MapHeader& header, ByteWriter& out) {
 MapHeader ReadHeader(ByteReader& in) {
   MapHeader header;
   const auto number = in.Get<uint8_t>();
-  const bool has_more_of_lens = number > kMoreOfLens;
-  const auto sensor = static_cast<uint8_t>(number - (has_more_of_lens ? kMoreOfLens : 0));
+  const uint8_t lens_flag = number > kNamedLens    ? kNamedLens
+                            : number > kMoreOfLens ? kMoreOfLens
+                                                   : 0;
+  const auto sensor = static_cast<uint8_t>(number - lens_flag);
   in.Require(sensor >= kRgbd && sensor <= kStereo,
              "is of a sensor that this version does not know");
   header.settings.sensor = sensor == kRgbd        ? SensorKind::kRgbd
                            : sensor == kMonocular ? SensorKind::kMonocular
                                                   : SensorKind::kStereo;
-  header.settings.camera = ReadCamera(has_more_of_lens, in);
+  header.settings.camera = ReadCamera(lens_flag, in);
   header.settings.level_count = in.Get<int32_t>();
   header.settings.scale_factor = in.GetFinite(kMostScaleFactor);
   in.Require(header.settings.level_count > 0 && header.settings.level_count <= kMostLevels &&

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "camera/wide_lens.h"
 #include "results/json_text.h"
 #include "results/object_file_version.h"
 #include "results/ply_file.h"
@@ -81,8 +82,13 @@ Json ToJson(const PinholeCamera& camera) {
       json[key] = value;
     }
   }
-  if (camera.IsFisheye()) {
-    json["type"] = "KannalaBrandt8";
+  if (const WideModel* const model = FindWideModel(camera.lens)) {
+    json["type"] = std::string(model->type);
+    for (const WideModel::Coefficient& one : model->coefficients) {
+      if (const std::string key(one.name); !json.contains(key) && camera.*one.field != 0.0) {
+        json[key] = camera.*one.field;
+      }
+    }
   }
   return json;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "camera/wide_lens.h"
 #include "files/json_file.h"
 #include "files/json_node.h"
 #include "files/plausible.h"
@@ -39,10 +40,14 @@ PinholeCamera ReadCamera(const JsonNode& node) {
   camera.k5 = NumberOrZero(node, "k5");
   camera.k6 = NumberOrZero(node, "k6");
   if (node.Has("type")) {
-    if (node.At("type").Text() != "KannalaBrandt8") {
-      node.At("type").Fail("\"KannalaBrandt8\"");
+    const WideModel* const model = FindWideModel(node.At("type").Text());
+    if (model == nullptr) {
+      node.At("type").Fail("\"KannalaBrandt8\", \"DoubleSphere\" or \"EUCM\"");
     }
-    camera.lens = LensModel::kKannalaBrandt;
+    camera.lens = model->lens;
+    for (const WideModel::Coefficient& one : model->coefficients) {
+      camera.*one.field = NumberOrZero(node, std::string(one.name).c_str());
+    }
   }
   camera.bf = node.At("bf").PositiveNumber(kMostPixels);
   constexpr uint32_t kLargest = 16384;

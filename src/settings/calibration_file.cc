@@ -10,6 +10,7 @@
 
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
+#include "settings/basalt_calibration.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
@@ -195,6 +196,12 @@ std::optional<RecognisedCalibration> RecogniseCalibration(const fs::path& file,
   }
   if (!root.IsMap()) {
     return std::nullopt;
+  }
+  if (IsBasalt(root)) {
+    RecognisedCalibration result;
+    result.calibration.camera = ReadBasaltCamera(file, root, 0);
+    result.program = "a calibration of Basalt, its first camera";
+    return result;
   }
   const YamlMap map(file, "a calibration", root);
   if (map.Has(KeyOf(map, kMatrixKeys))) {

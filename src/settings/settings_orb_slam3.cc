@@ -125,7 +125,7 @@ class Translator {
         ExpectText(setting, {"1.0"}, "");
         return;
       case Kind::kModel:
-        ExpectText(setting, {"PinHole", "Rectified", "KannalaBrandt8"},
+        ExpectText(setting, {"PinHole", "Rectified", "KannalaBrandt8", "DoubleSphere", "EUCM"},
                    "; HullSLAM has no other camera model");
         is_rectified_ = setting.text == "Rectified";
         if (!is_rectified_) {

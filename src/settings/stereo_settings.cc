@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "settings/basalt_calibration.h"
 #include "settings/calibration_file.h"
 #include "settings/kalibr_camchain.h"
 #include "settings/rotation_matrix.h"
@@ -157,11 +158,15 @@ bool IsStereoKey(std::string_view key) {
 bool HasRightCamera(const fs::path& file) {
   const YamlMap settings(file, "settings");
   return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings) ||
-         IsInfoPair(file, settings);
+         settings.Has("value0") || IsInfoPair(file, settings);
 }
 
 std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {
-  const YamlMap settings(file, "settings");
+  const YAML::Node root = ReadYaml(file);
+  if (IsBasalt(root)) {
+    return ReadBasaltPair(file, root);
+  }
+  const YamlMap settings(file, "settings", root);
   if (IsOrb2Pair(settings)) {
     return PairOfOrb2(settings);
   }

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "camera/wide_lens.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -22,12 +24,17 @@ void ReadLens(const YamlMap& map, const char* model_key, const char* coefficient
 }
 
 PinholeCamera ReadPinhole(const YamlMap& map, const char* coefficients_key) {
-  if (const std::string model = map.Text("camera_model"); model != "pinhole") {
-    map.Fail("camera_model", fmt::format("is '{}', expected 'pinhole'; HullSLAM has no other "
-                                         "projection",
+  const std::string model = map.Text("camera_model");
+  const WideModel* const wide = FindWideModel(model);
+  if (wide == nullptr && model != "pinhole") {
+    map.Fail("camera_model", fmt::format("is '{}', expected 'pinhole', 'ds' or 'eucm'; HullSLAM "
+                                         "has no other projection",
                                          ShowText(model)));
   }
-  const std::vector<double> focal = map.Numbers("intrinsics", 4, "fu fv cu cv");
+  const size_t own = wide != nullptr ? wide->coefficients.size() : 0;
+  const std::vector<double> numbers = map.Numbers(
+      "intrinsics", own + 4, wide != nullptr ? "the coefficients and fu fv cu cv" : "fu fv cu cv");
+  const std::span<const double> focal = std::span(numbers).subspan(own);
   const std::vector<double> size = map.Numbers("resolution", 2, "width height");
   PinholeCamera camera{.fx = focal[0],
                        .fy = focal[1],
@@ -35,7 +42,11 @@ PinholeCamera ReadPinhole(const YamlMap& map, const char* coefficients_key) {
                        .cy = focal[3],
                        .width = map.Pixels("resolution", size[0]),
                        .height = map.Pixels("resolution", size[1])};
-  ReadLens(map, "distortion_model", coefficients_key, camera);
+  if (wide == nullptr) {
+    ReadLens(map, "distortion_model", coefficients_key, camera);
+  } else {
+    SetLensOfKalibr(model, std::span(numbers).first(own), camera);
+  }
   return camera;
 }
 

@@ -61,5 +61,19 @@ TEST(LensFault, AFisheyeHasFourCoefficients) {
   }
 }
 
+TEST(LensFault, CoefficientsOfOtherLensesAreNamed) {
+  PinholeCamera camera = DoubleSphereCamera();
+  camera.k1 = 0.1;
+  ExpectFault(camera,
+              "Camera.k1 is '0.1', expected 0: a fisheye lens (DoubleSphere) has only xi "
+              "to alpha");
+  camera = ExtendedUnifiedCamera();
+  camera.alpha = 1.5;
+  ExpectFault(camera, "Camera.alpha is '1.5', expected a number from 0 to 1");
+  camera = {.fx = 500, .fy = 500, .cx = 320, .cy = 240};
+  camera.alpha = 0.6;
+  ExpectFault(camera, "Camera.alpha is '0.6', expected 0: a PinHole has no such coefficient");
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -58,6 +58,30 @@ TEST(NamedLens, FisheyeHasManyNames) {
             "with a fisheye lens (Kannala-Brandt)");
 }
 
+TEST(NamedLens, TheOtherWideLensesHaveTwoCoefficients) {
+  const Set sphere = SetLens("DS", {-0.2, 0.6});
+  EXPECT_EQ(sphere.expected, "");
+  EXPECT_EQ(sphere.camera.lens, LensModel::kDoubleSphere);
+  EXPECT_EQ(sphere.camera.xi, -0.2);
+  EXPECT_EQ(sphere.camera.alpha, 0.6);
+  EXPECT_EQ(sphere.camera.k6, 0.0);
+  const Set unified = SetLens("eucm", {0.6, 1.1});
+  EXPECT_EQ(unified.camera.lens, LensModel::kExtendedUnified);
+  EXPECT_EQ(unified.camera.alpha, 0.6);
+  EXPECT_EQ(unified.camera.beta, 1.1);
+  EXPECT_EQ(DescribeLens(unified.camera), "with a fisheye lens (extended unified model)");
+  EXPECT_EQ(SetLens("ds", {0.1}).expected, "expected 2 coefficients: xi alpha");
+}
+
+TEST(NamedLens, KalibrsFocalLengthOfADoubleSphereBecomesThatOnTheAxis) {
+  PinholeCamera camera{.fx = 160.0, .fy = 80.0};
+  EXPECT_EQ(SetLensOfKalibr("ds", std::vector{-0.2, 0.6}, camera), "");
+  EXPECT_DOUBLE_EQ(camera.fx, 200.0);
+  EXPECT_DOUBLE_EQ(camera.fy, 100.0);
+  EXPECT_EQ(SetLensOfKalibr("eucm", std::vector{0.6, 1.0}, camera), "");
+  EXPECT_DOUBLE_EQ(camera.fx, 200.0);
+}
+
 TEST(NamedLens, WhatIsMissingOrUnknownIsSaid) {
   EXPECT_EQ(SetLens("equidistant", {0.1, 0.2}).expected, "expected 4 coefficients: k1 k2 k3 k4");
   EXPECT_NE(SetLens("radtan", {0.1, 0.2}).expected.find("expected 4 to 5 coefficients"),

@@ -83,6 +83,14 @@ TEST(McapMessagesTest, OurReaderReadsImagesAndCameras) {
       ReadCameraInfo(kCdr, CameraInfoMessageOf({1, 2}, fisheye), "m");
   EXPECT_EQ(of_fisheye.distortion_model, "equidistant");
   EXPECT_EQ(of_fisheye.distortion, (std::vector<double>{0.1, 0.2, 0.5, 0.6}));
+  PinholeCamera sphere = camera;
+  sphere.lens = LensModel::kDoubleSphere;
+  sphere.xi = -0.2;
+  sphere.alpha = 0.6;
+  const CameraInfoMessage of_sphere =
+      ReadCameraInfo(kCdr, CameraInfoMessageOf({1, 2}, sphere), "m");
+  EXPECT_EQ(of_sphere.distortion_model, "double_sphere");
+  EXPECT_EQ(of_sphere.distortion, (std::vector<double>{-0.2, 0.6}));
   const std::string message = JpegMessage({1, 2}, "jpeg bytes");
   const CompressedImageMessage image = ReadCompressedImage(kCdr, message, "m");
   EXPECT_EQ(image.stamp, (BagTime{1, 2}));

@@ -74,6 +74,38 @@ TEST_F(Lens, ADeskThroughAFisheyeIsTrackedWithItsObjects) {
   EXPECT_EQ(RunProgram("make_synthetic", {folder_.path() / "x", "--fisheye", "300"}).exit_code, 2);
 }
 
+// The lens of 160 degrees above, fitted to 0.01 px by two other models.
+TEST_F(Lens, OtherModelsOfTheSameLensGiveItsTrajectory) {
+  const fs::path desk = folder_.path() / "desk";
+  const ProgramResult rendered = RunProgram(
+      "make_synthetic", {desk, "--frames", std::to_string(kFrames), "--fisheye", "160", "--quiet"});
+  ASSERT_EQ(rendered.exit_code, 0) << rendered.errors;
+  struct Model {
+    const char* type;
+    const char* focal;
+    std::vector<std::string> coefficients;
+  };
+  const std::vector<Model> models = {
+      {"DoubleSphere", "229.724793", {"Camera.xi=-0.172414", "Camera.alpha=0.593623"}},
+      {"EUCM", "229.689283", {"Camera.alpha=0.629196", "Camera.beta=1.043956"}}};
+  for (const Model& model : models) {
+    std::vector<std::string> options = {"--quiet"};
+    std::vector<std::string> settings = model.coefficients;
+    settings.insert(settings.end(), {"Camera.k1=0", "Camera.k2=0", "Camera.k3=0", "Camera.k4=0",
+                                     "Camera.type=" + std::string(model.type),
+                                     "Camera.fx=" + std::string(model.focal),
+                                     "Camera.fy=" + std::string(model.focal)});
+    for (const std::string& setting : settings) {
+      options.insert(options.end(), {"--set", setting});
+    }
+    const nlohmann::json summary = Run(desk, model.type, options);
+    EXPECT_EQ(summary["trajectory"]["tracked"], kFrames) << model.type;
+    EXPECT_LT(summary["trajectory"]["ate_rmse_m"].get<double>(), 0.004) << model.type;
+    EXPECT_GE(summary["objects"]["count"].get<int>(), 8) << model.type;
+    EXPECT_GT(summary["objects"]["siou_mean"].get<double>(), 0.75) << model.type;
+  }
+}
+
 TEST_F(Lens, APairOfFisheyeLensesIsRectifiedAndTracked) {
   constexpr int kPairs = 12;
   const fs::path desk = folder_.path() / "pairs";

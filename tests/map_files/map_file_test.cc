@@ -255,13 +255,25 @@ TEST_F(MapFileTest, KeepsTheLens) {
   MapSettings fisheye = MadeSettings();
   fisheye.camera.lens = LensModel::kKannalaBrandt;
   fisheye.camera.k4 = 0.001;
-  for (const MapSettings& settings : {rational, fisheye}) {
+  MapSettings sphere = MadeSettings();
+  sphere.camera.k1 = sphere.camera.k2 = sphere.camera.p1 = sphere.camera.p2 = sphere.camera.k3 =
+      0.0;
+  sphere.camera.lens = LensModel::kDoubleSphere;
+  sphere.camera.xi = -0.2;
+  sphere.camera.alpha = 0.6;
+  MapSettings unified = sphere;
+  unified.camera.lens = LensModel::kExtendedUnified;
+  unified.camera.xi = 0.0;
+  unified.camera.beta = 1.1;
+  for (const MapSettings& settings : {rational, fisheye, sphere, unified}) {
     WriteMap(path_, SmallMap(), settings);
     EXPECT_EQ(ReadMap(path_).settings, settings);
     EXPECT_EQ(Dump(ReadMap(path_).map), Dump(SmallMap()));
     SystemOptions other = OptionsOf(settings);
     other.camera.lens = LensModel::kBrown;
     other.camera.k4 = 0.0;
+    other.camera.xi = other.camera.alpha = 0.0;
+    other.camera.beta = 1.0;
     EXPECT_THROW(ReadMap(path_, other), InputError);
   }
 }

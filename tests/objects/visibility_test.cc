@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 #include "objects/made_objects.h"
 #include "support/test_cameras.h"
 

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -47,6 +48,32 @@ TEST_F(KalibrCamchain, BothWaysToGiveThePosesAreTheSamePair) {
   }
   EXPECT_FALSE(IsCamchain(Write("Camera.fx: 1\n")));
   EXPECT_TRUE(ReadImuFromCam0(Write(std::string("cam0:\n") + kLens)).translation.isZero());
+}
+
+// The coefficients of these lenses come first in the intrinsics.
+TEST_F(KalibrCamchain, DoubleSpheresAndTheExtendedUnifiedModelAreRead) {
+  const auto write = [&](const std::string& model, const std::string& numbers) {
+    return Write("cam0:\n  camera_model: " + model + "\n  intrinsics: [" + numbers +
+                 "]\n  distortion_model: none\n  distortion_coeffs: []\n  resolution: [512, 512]\n"
+                 "cam1:\n  camera_model: " +
+                 model + "\n  intrinsics: [" + numbers + "]\n  resolution: [512, 512]\n" +
+                 kChained);
+  };
+  const StereoCalibration sphere =
+      ReadCamchainPair(write("ds", "-0.17, 0.59, 158.0, 159.0, 254.0, 256.0"));
+  EXPECT_EQ(sphere.right.lens, LensModel::kDoubleSphere);
+  EXPECT_EQ(sphere.left.xi, -0.17);
+  EXPECT_EQ(sphere.left.alpha, 0.59);
+  EXPECT_NEAR(sphere.left.fy, 159.0 / (1.0 - 0.17), 1e-9) << "on the axis";
+  EXPECT_EQ(sphere.left.cy, 256.0);
+  const StereoCalibration unified =
+      ReadCamchainPair(write("eucm", "0.6, 1.1, 191.0, 192.0, 254.0, 256.0"));
+  EXPECT_EQ(unified.left.lens, LensModel::kExtendedUnified);
+  EXPECT_EQ(unified.left.beta, 1.1);
+  ExpectInputError([&] { ReadCamchainPair(write("ds", "158.0, 159.0, 254.0, 256.0")); },
+                   {"intrinsics", "4 value(s)"});
+  ExpectInputError([&] { ReadCamchainPair(write("omni", "1.5, 158.0, 159.0, 254.0, 256.0")); },
+                   {"camera_model is 'omni'", "'eucm'"});
 }
 
 }  // namespace

@@ -19,6 +19,28 @@ inline PinholeCamera FisheyeCamera() {
           .lens = LensModel::kKannalaBrandt};
 }
 
+// The same field of view through a double sphere and through the extended unified model.
+inline PinholeCamera DoubleSphereCamera() {
+  return {.fx = 250.0,
+          .fy = 251.0,
+          .cx = 318.0,
+          .cy = 243.0,
+          .bf = 19.5,
+          .lens = LensModel::kDoubleSphere,
+          .xi = -0.2,
+          .alpha = 0.6};
+}
+inline PinholeCamera ExtendedUnifiedCamera() {
+  return {.fx = 243.0,
+          .fy = 244.0,
+          .cx = 318.0,
+          .cy = 243.0,
+          .bf = 19.0,
+          .lens = LensModel::kExtendedUnified,
+          .alpha = 0.62,
+          .beta = 1.05};
+}
+
 // The pinhole camera of freiburg3 as a fisheye: the first terms of the series of tan(t). Within its
 // field of view of 2 x 37 degrees they differ from the pinhole by less than 0.05 px.
 inline PinholeCamera PinholeAsFisheye() {

@@ -52,13 +52,16 @@ inline TestCamera PinholeTestCamera() { return {"Pinhole", SyntheticSensor()}; }
 
 inline TestCamera FisheyeTestCamera() { return {"Fisheye", SensorWith(FisheyeCamera())}; }
 
-// A camera without distortion, one with, a fisheye, and a stereo pair. The depths of the first
-// three are those of depth images.
+// A camera without distortion, one with, two fisheyes, and a stereo pair. The depths of the others
+// are those of depth images.
 inline std::vector<TestCamera> TestCameras() {
   TestCamera pair{"Pair", SyntheticSensor()};
   pair.sensor.kind = SensorKind::kStereo;
-  return {
-      PinholeTestCamera(), {"Rational", SensorWith(RationalCamera())}, FisheyeTestCamera(), pair};
+  return {PinholeTestCamera(),
+          {"Rational", SensorWith(RationalCamera())},
+          FisheyeTestCamera(),
+          {"DoubleSphere", SensorWith(DoubleSphereCamera())},
+          pair};
 }
 
 // The undistorted pixel of one in which distances are measured: the inverse of Sensor::ToGrid().

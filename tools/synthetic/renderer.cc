@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam::synthetic {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 #include "hullslam/util/check.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_renderer.h"

@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// The models of a lens. Both map a direction to a point of the plane z = 1, and the intrinsics map
+// The models of a lens. All map a direction to a point of the plane z = 1, and the intrinsics map
 // this point to a raw pixel.
 enum class LensModel {
   // Brown's model in the rational form of OpenCV: radial factor (1 + k1 r^2 + k2 r^4 + k3 r^6) /
@@ -20,6 +20,12 @@ enum class LensModel {
   // t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8). It is OpenCV's `fisheye`, the `equidistant` of
   // Kalibr and ROS, and ORB-SLAM3's KannalaBrandt8.
   kKannalaBrandt,
+  // Double sphere (Usenko et al. 2018) with xi and alpha: the `ds` of Kalibr and Basalt, whose
+  // focal lengths are 1 + xi times as large: here they are those on the axis.
+  kDoubleSphere,
+  // The extended unified model (Khomutenko et al. 2016) with alpha and beta: the `eucm` of Kalibr
+  // and Basalt.
+  kExtendedUnified,
 };
 
 // Pinhole camera with the lens through which its raw images were taken. For RGB-D it also has the
@@ -44,6 +50,9 @@ struct PinholeCamera {
   double k5 = 0.0;
   double k6 = 0.0;
   LensModel lens = LensModel::kBrown;
+  double xi = 0.0;  // of kDoubleSphere
+  double alpha = 0.0;
+  double beta = 1.0;  // of kExtendedUnified
 
   // Radians. Rays farther from the axis of a fisheye lens are not used, because their undistorted
   // pixels run to infinity at 90 degrees. There, an error of d radians in the ray deviates from its
@@ -61,7 +70,7 @@ struct PinholeCamera {
     return (Eigen::Matrix3d() << fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0).finished();
   }
 
-  bool IsFisheye() const { return lens == LensModel::kKannalaBrandt; }
+  bool IsFisheye() const { return lens != LensModel::kBrown; }
   bool IsDistorted() const;
 
   // Undistorted pixel of a point in the camera frame (metres, z forward). Requires z > 0.

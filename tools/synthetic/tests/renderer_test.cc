@@ -8,7 +8,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "camera/kannala_brandt.h"
+#include "camera/wide_lens.h"
 #include "synthetic/camera_path.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/object_models.h"
