@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,8 +50,8 @@ struct SequenceFrame {
 struct MaskFiles {
   std::unique_ptr<const MaskSource> source;
   std::vector<MaskFrame> frames;
-  cv::Size size;                           // of the images as read
-  std::function<void(InstanceMask&)> fit;  // ImageSequence::fit_mask
+  cv::Size size;                 // of the images as read
+  std::vector<ImageWarp> warps;  // ImageSequence::warps
 };
 
 // Python's rule for indices: negative ones count from the end.
@@ -150,14 +149,10 @@ SequenceFrame Load(FrameList& list, py::ssize_t index) {
 MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list,
                         const std::string& format) {
   return WithoutGil([&] {
-    const PinholeCamera& camera = list.camera;
-    const ImageSequence& sequence = list.sequence;
     MaskFiles files{.source = nullptr,
                     .frames = list.names,
-                    .size = sequence.read_width > 0
-                                ? cv::Size(sequence.read_width, sequence.read_height)
-                                : cv::Size(camera.width, camera.height),
-                    .fit = sequence.fit_mask};
+                    .size = SizeAsRead(list.sequence, list.camera),
+                    .warps = list.sequence.warps};
     files.source = OpenMasks({path, format, files.size.width, files.size.height}, files.frames);
     return files;
   });
@@ -167,8 +162,8 @@ MaskList ReadMasks(const MaskFiles& files, py::ssize_t index) {
   const size_t i = ToIndex(index, files.frames.size());
   return WithoutGil([&] {
     MaskList list{.masks = files.source->Read(files.frames[i]).masks, .size = files.size};
-    if (files.fit != nullptr) {
-      std::ranges::for_each(list.masks, files.fit);
+    if (!files.warps.empty()) {
+      FitMasks(files.warps, ImageSide::kLeft, list.masks);
       list.size = {};
     }
     return list;

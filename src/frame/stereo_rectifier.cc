@@ -144,7 +144,8 @@ StereoRectifier::Maps StereoRectifier::MakeMaps(const PinholeCamera& read,
   return maps;
 }
 
-cv::Mat StereoRectifier::Remap(const cv::Mat& image, const Maps& maps) {
+cv::Mat StereoRectifier::Rectify(const cv::Mat& image, ImageSide side) const {
+  const Maps& maps = EyeOf(side).maps;
   if (maps.columns.empty()) {
     return image;
   }
@@ -153,17 +154,14 @@ cv::Mat StereoRectifier::Remap(const cv::Mat& image, const Maps& maps) {
   return rectified;
 }
 
-void StereoRectifier::Rectify(const Eye& eye, InstanceMask& mask) const {
+Eigen::Vector2d StereoRectifier::Rectify(const Eigen::Vector2d& pixel, ImageSide side) const {
+  const Eye& eye = EyeOf(side);
   if (eye.maps.columns.empty()) {
-    return;
+    return pixel;
   }
-  for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
-    for (Eigen::Vector2d& point : outline) {
-      const Eigen::Vector3d ray =
-          eye.rectified_from_read.rotation * eye.read.Unproject(eye.read.Undistort(point), 1.0);
-      point = camera_.Project(ray);
-    }
-  }
+  const Eigen::Vector3d ray =
+      eye.rectified_from_read.rotation * eye.read.Unproject(eye.read.Undistort(pixel), 1.0);
+  return camera_.Project(ray);
 }
 
 }  // namespace hullslam

@@ -41,20 +41,14 @@ cv::Mat ReadMaskAll(const std::filesystem::path& path) {
 cv::Mat ReadMaskAll(const std::filesystem::path& path, const ImageSequence& sequence,
                     const PinholeCamera& camera, ImageSide side) {
   const cv::Mat as_read = ReadMaskAll(path);
-  const cv::Size expected = sequence.read_width > 0
-                                ? cv::Size(sequence.read_width, sequence.read_height)
-                                : cv::Size(camera.width, camera.height);
+  const cv::Size expected = SizeAsRead(sequence, camera);
   if (as_read.size() != expected) {
     throw InputError(fmt::format("{}: is {}x{} px, expected the size of the images, {}x{} px",
                                  path.string(), as_read.cols, as_read.rows, expected.width,
                                  expected.height));
   }
-  const auto& fit = side == ImageSide::kLeft ? sequence.fit_mask_all : sequence.fit_right_mask_all;
-  if (fit == nullptr) {
-    return as_read;
-  }
   constexpr int kHalf = 128;  // of a pixel whose value was interpolated
-  cv::Mat mask = fit(as_read) >= kHalf;
+  cv::Mat mask = FitMaskAll(sequence.warps, side, as_read) >= kHalf;
   RequireUsedPixels(path, mask);
   return mask;
 }

@@ -15,8 +15,6 @@ namespace hullslam {
 // become dark ones, and for a mask that is black everywhere.
 cv::Mat ReadMaskAll(const std::filesystem::path& path);
 
-enum class ImageSide { kLeft, kRight };
-
 // The mask of the images that the sequence gives, which have the size of the camera: rectified or
 // resized as they are. Throws InputError unless the mask has the size of the images as read.
 cv::Mat ReadMaskAll(const std::filesystem::path& path, const ImageSequence& sequence,

@@ -89,13 +89,9 @@ void FrameSource::AddMasks(size_t frame, LoadedImage& loaded) const {
     return;
   }
   loaded.image->masks = masks_.Read(frame);
-  if (sequence_.fit_mask != nullptr) {
-    std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
-  }
+  FitMasks(sequence_.warps, ImageSide::kLeft, loaded.image->masks);
   loaded.image->right_masks = masks_.ReadRight(frame);
-  if (sequence_.fit_right_mask != nullptr) {
-    std::ranges::for_each(loaded.image->right_masks, sequence_.fit_right_mask);
-  }
+  FitMasks(sequence_.warps, ImageSide::kRight, loaded.image->right_masks);
 }
 
 std::optional<LoadedFrame> FrameSource::BuildNext() {

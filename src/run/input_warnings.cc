@@ -128,9 +128,9 @@ void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& ca
       std::vector<InstanceMask> found = read(i);
       if (!found.empty()) {
         const cv::Mat grey = sequence.load(sequence.frames[i], camera).grey;
-        if (sequence.fit_mask != nullptr) {
+        if (!sequence.warps.empty()) {
           as_given.Add(grey, found);
-          std::ranges::for_each(found, sequence.fit_mask);
+          FitMasks(sequence.warps, ImageSide::kLeft, found);
         }
         registration.Add(grey, found);
       }
@@ -142,7 +142,7 @@ void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& ca
     return;
   }
   const double contrast = registration.Contrast(1);
-  if (sequence.fit_mask != nullptr) {
+  if (!sequence.warps.empty()) {
     RefuseMasksOfRectifiedImages(as_given.Contrast(1), contrast);
   }
   int best = 1;

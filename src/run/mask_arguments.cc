@@ -59,8 +59,8 @@ void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& 
 
 MaskRequest RequestOf(const std::filesystem::path& path, const std::string& format,
                       const ImageSequence& sequence, const PinholeCamera& camera) {
-  return {path, format, sequence.read_width > 0 ? sequence.read_width : camera.width,
-          sequence.read_height > 0 ? sequence.read_height : camera.height};
+  const cv::Size size = SizeAsRead(sequence, camera);
+  return {path, format, size.width, size.height};
 }
 
 SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)

@@ -17,7 +17,6 @@
 #include "files/staging_folder.h"
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/util/error.h"
-#include "sequences/frame_colour.h"
 #include "util/printable.h"
 
 namespace hullslam {
@@ -55,7 +54,7 @@ std::string ClassLines(const Segmenter& segmenter) {
 // The hash of the pixels of a frame; null if it cannot be read.
 Json HashOfFrame(const ImageSequence& sequence, size_t frame) {
   try {
-    const cv::Mat image = ReadFrameColour(sequence, sequence.frames.at(frame)).clone();
+    const cv::Mat image = sequence.load_colour(sequence.frames.at(frame)).clone();
     return ContentHash(image.data, image.total() * image.elemSize());
   } catch (const InputError&) {
     return nullptr;

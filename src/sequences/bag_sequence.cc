@@ -412,9 +412,7 @@ BagPairs OpenBagPairs(const fs::path& path, const BagSequenceOptions& options,
     loader->AddPair(path, pair.first, pair.second, pairs.images);
   }
   SetLoaders(loader, pairs.images);
-  if (rectifier != nullptr) {
-    RectifyPairs(rectifier, pairs.images);
-  }
+  RectifyPairs(rectifier, pairs.images);
   SelectFrames(path, options.selection, pairs.images);
   pairs.notes = std::move(opened.notes);
   pairs.warnings = std::move(opened.warnings);

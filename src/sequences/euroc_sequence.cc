@@ -170,23 +170,6 @@ void AddStates(const fs::path& root, const std::optional<Rigid3>& body_from_cam,
   }
 }
 
-// The images have no depth, so those of 16 bits are images too.
-void LoadImages(ImageSequence& sequence) {
-  std::vector<fs::path> images;
-  for (const FramePaths& frame : sequence.frames) {
-    images.push_back(frame.image);
-  }
-  const uint16_t brightest = BrightestOf(images);
-  sequence.load = [brightest](const FramePaths& frame, const PinholeCamera& camera) {
-    ImageInput image{frame.timestamp, ReadGreyImage(frame.image, brightest), cv::Mat()};
-    CheckImageSize(frame.image.string(), image.grey, camera);
-    return image;
-  };
-  sequence.load_colour = [brightest](const FramePaths& frame) {
-    return ReadColourImage(frame.image, brightest);
-  };
-}
-
 fs::path FindRoot(const fs::path& folder) {
   std::error_code error;
   for (const fs::path& root : {folder / "mav0", folder}) {
@@ -224,7 +207,7 @@ EurocSequence OpenEurocSequence(const fs::path& folder, const FrameSelection& se
   }
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
-  LoadImages(sequence.images);
+  LoadWithoutDepth(sequence.images);
   AddStates(root, body_from_cam, sequence.images);
   return sequence;
 }
@@ -251,7 +234,8 @@ StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& sele
   PairImages(root, left, sequence.calibration.frames_per_second, sequence.images);
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
-  LoadPairs(rectifier, sequence.images);
+  LoadWithoutDepth(sequence.images);
+  RectifyPairs(rectifier, sequence.images);
   AddStates(root, calibration ? std::optional(calibration->left.body_from_cam) : std::nullopt,
             sequence.images);
   const fs::path truth = folder / "groundtruth.txt";

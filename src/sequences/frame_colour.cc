@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {
@@ -18,14 +17,9 @@ const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp) {
                                                                                  : nullptr;
 }
 
-cv::Mat ReadFrameColour(const ImageSequence& sequence, const FramePaths& frame) {
-  return sequence.load_colour != nullptr ? sequence.load_colour(frame)
-                                         : ReadColourImage(frame.image);
-}
-
 cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
                    const PinholeCamera& camera) {
-  cv::Mat image = ReadFrameColour(sequence, frame);
+  cv::Mat image = sequence.load_colour(frame);
   CheckImageSize(frame.image.string(), image, camera);
   return image;
 }

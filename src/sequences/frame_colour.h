@@ -15,10 +15,6 @@ inline constexpr double kSameMoment = 1e-3;
 // moment. It lives as long as the sequence.
 const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp);
 
-// The image of a frame in colour, CV_8UC3 with blue first, of whatever size it is. To be called
-// like ImageSequence::load.
-cv::Mat ReadFrameColour(const ImageSequence& sequence, const FramePaths& frame);
-
 // The image of a frame in colour, CV_8UC3 with blue first, in raw pixels. A grey image has three
 // equal channels. To be called like ImageSequence::load. Throws InputError if the image cannot be
 // read or does not have the size of the camera.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -45,14 +46,77 @@ ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   return image;
 }
 
+cv::Mat LoadFrameColour(const FramePaths& frame) { return ReadColourImage(frame.image); }
+
+void AddWarp(ImageWarp warp, ImageSequence& sequence) {
+  sequence.choices.insert(warp.choice);
+  sequence.load = [load = std::move(sequence.load), warp](const FramePaths& frame,
+                                                          const PinholeCamera& camera) {
+    PinholeCamera before = camera;
+    if (!warp.size_before.empty()) {
+      before.width = warp.size_before.width;
+      before.height = warp.size_before.height;
+    }
+    ImageInput image = load(frame, before);
+    image.grey = warp.image(image.grey, ImageSide::kLeft, false);
+    if (!image.right.empty()) {
+      image.right = warp.image(image.right, ImageSide::kRight, false);
+    }
+    if (!image.depth.empty()) {
+      image.depth = warp.image(image.depth, ImageSide::kLeft, true);
+    }
+    return image;
+  };
+  sequence.load_colour = [load = std::move(sequence.load_colour), warp](const FramePaths& frame) {
+    return warp.image(load(frame), ImageSide::kLeft, false);
+  };
+  sequence.warps.push_back(std::move(warp));
+}
+
+cv::Size SizeAsRead(const ImageSequence& sequence, const PinholeCamera& camera) {
+  for (const ImageWarp& warp : sequence.warps) {
+    if (!warp.size_before.empty()) {
+      return warp.size_before;
+    }
+  }
+  return {camera.width, camera.height};
+}
+
+void FitMasks(std::span<const ImageWarp> warps, ImageSide side, std::vector<InstanceMask>& masks) {
+  for (const ImageWarp& warp : warps) {
+    for (InstanceMask& mask : masks) {
+      for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+        for (Eigen::Vector2d& point : outline) {
+          point = warp.pixel(point, side);
+        }
+      }
+    }
+  }
+}
+
+cv::Mat FitMaskAll(std::span<const ImageWarp> warps, ImageSide side, cv::Mat mask) {
+  for (const ImageWarp& warp : warps) {
+    mask = warp.image(mask, side, true);
+  }
+  return mask;
+}
+
 Trajectory AsRead(const ImageSequence& sequence, Trajectory poses) {
-  return sequence.cam_from_read ? OfOtherCamera(std::move(poses), *sequence.cam_from_read)
-                                : std::move(poses);
+  for (const ImageWarp& warp : sequence.warps | std::views::reverse) {
+    if (warp.after_from_before) {
+      poses = OfOtherCamera(std::move(poses), *warp.after_from_before);
+    }
+  }
+  return poses;
 }
 
 Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses) {
-  return sequence.cam_from_read ? OfOtherCamera(std::move(poses), Inverse(*sequence.cam_from_read))
-                                : std::move(poses);
+  for (const ImageWarp& warp : sequence.warps) {
+    if (warp.after_from_before) {
+      poses = OfOtherCamera(std::move(poses), Inverse(*warp.after_from_before));
+    }
+  }
+  return poses;
 }
 
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,

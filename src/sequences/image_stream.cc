@@ -24,12 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr double kDefaultFramesPerSecond = 30.0;
 
-ImageInput LoadPicture(const FramePaths& frame, const PinholeCamera& camera) {
-  ImageInput image{frame.timestamp, ReadGreyImage(frame.image), cv::Mat()};
-  CheckImageSize(frame.image.string(), image.grey, camera);
-  return image;
-}
-
 void CheckFrameRate(const std::optional<double>& frames_per_second) {
   constexpr double kLeast = 0.01;
   constexpr double kMost = 10'000.0;
@@ -61,7 +55,6 @@ ImageStream OpenFolder(const fs::path& folder, const ImageStreamOptions& options
   const cv::Mat first = ReadGreyImage(stream.images.frames.front().image);
   stream.width = first.cols;
   stream.height = first.rows;
-  stream.images.load = LoadPicture;
   SelectFrames(folder, options.selection, stream.images);
   CheckImagesExist(stream.images.frames);
   return stream;

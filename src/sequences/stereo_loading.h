@@ -8,15 +8,14 @@
 
 namespace hullslam {
 
-// Reads the images and the right images of the frames from their files, and rectifies them.
-// `rectifier` is null for images that are rectified already.
-void LoadPairs(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);
+// Reads the images, and the right images if there are some, from their files. Without depth images,
+// those of 16 bits are images too.
+void LoadWithoutDepth(ImageSequence& sequence);
 
-// Rectifies what the loaders of the sequence give.
-void RectifyPairs(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);
+// The images of the frames show both halves of a pair, the left one first.
+void SplitHalves(ImageSequence& sequence);
 
-// The images of the frames show both halves of a pair, the left one first. To be called for a
-// sequence whose loaders give such images.
-void SplitHalves(std::shared_ptr<const StereoRectifier> rectifier, ImageSequence& sequence);
+// Rectifies the pairs. `rectifier` is null for images that are rectified already.
+void RectifyPairs(const std::shared_ptr<const StereoRectifier>& rectifier, ImageSequence& sequence);
 
 }  // namespace hullslam

@@ -372,7 +372,8 @@ StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& sele
   if (rectifier != nullptr) {
     sequence.calibration.camera = rectifier->camera();
   }
-  LoadPairs(rectifier, sequence.images);
+  LoadWithoutDepth(sequence.images);
+  RectifyPairs(rectifier, sequence.images);
   return sequence;
 }
 
@@ -396,7 +397,8 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
                                                         : std::nullopt,
                                .selection = options.selection})
             .images;
-    SplitHalves(options.rectifier, halves);
+    SplitHalves(halves);
+    RectifyPairs(options.rectifier, halves);
     halves.dataset = "stereo_folder";
     return halves;
   }
@@ -409,7 +411,8 @@ ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& 
     }
   }
   SelectFrames(path, options.selection, sequence);
-  LoadPairs(options.rectifier, sequence);
+  LoadWithoutDepth(sequence);
+  RectifyPairs(options.rectifier, sequence);
   return sequence;
 }
 

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "sequences/frame_colour.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"
@@ -33,7 +32,7 @@ std::string FirstStem(const ImageSequence& sequence) {
 }
 
 void ExpectRed(const ImageSequence& sequence) {
-  const cv::Mat image = ReadFrameColour(sequence, sequence.frames.front());
+  const cv::Mat image = sequence.load_colour(sequence.frames.front());
   ASSERT_EQ(image.type(), CV_8UC3);
   EXPECT_EQ(image.size(), cv::Size(32, 24));
   const auto pixel = image.at<cv::Vec3b>(5, 5);
@@ -101,7 +100,7 @@ TEST(OpenImages, SequencesOfStereoCamerasGiveTheirStoredLeftImages) {
   }
   const ImageSequence sequence = OpenImages(*euroc);
   EXPECT_EQ(sequence.frames.size(), 105U);
-  EXPECT_EQ(ReadFrameColour(sequence, sequence.frames.front()).size(), cv::Size(672, 376));
+  EXPECT_EQ(sequence.load_colour(sequence.frames.front()).size(), cv::Size(672, 376));
 }
 
 TEST(Datasets, EachHasANameOfItsOwnAndAProgramForEachSensor) {

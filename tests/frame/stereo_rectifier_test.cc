@@ -52,9 +52,9 @@ TEST(StereoRectifier, APointLiesInOneRowAndItsDisparityTellsItsDepth) {
       const cv::Moments moments = cv::moments(image);
       return Eigen::Vector2d(moments.m10 / moments.m00, moments.m01 / moments.m00);
     };
-    const Eigen::Vector2d left = find(rectifier.RectifyLeft(draw(pair.left, point)));
+    const Eigen::Vector2d left = find(rectifier.Rectify(draw(pair.left, point), ImageSide::kLeft));
     const Eigen::Vector2d right =
-        find(rectifier.RectifyRight(draw(pair.right, pair.right_from_left * point)));
+        find(rectifier.Rectify(draw(pair.right, pair.right_from_left * point), ImageSide::kRight));
     EXPECT_NEAR(left.y(), right.y(), 0.1);
     const Eigen::Vector3d rectified = rectifier.rectified_from_left() * point;
     EXPECT_LT((left - camera.Project(rectified)).norm(), 0.15);
@@ -62,16 +62,15 @@ TEST(StereoRectifier, APointLiesInOneRowAndItsDisparityTellsItsDepth) {
   }
 }
 
-TEST(StereoRectifier, MasksFollowTheLeftImage) {
+TEST(StereoRectifier, PixelsFollowTheLeftImage) {
   const StereoCalibration pair = MadePair();
   const StereoRectifier rectifier(pair, "test");
   const Eigen::Vector3d point(0.2, 0.1, 1.0);
-  InstanceMask mask;
-  mask.outlines = {{pair.left.Distort(pair.left.Project(point)), {300.0, 200.0}, {320.0, 240.0}}};
-  rectifier.RectifyLeft(mask);
+  const Eigen::Vector2d pixel =
+      rectifier.Rectify(pair.left.Distort(pair.left.Project(point)), ImageSide::kLeft);
   const Eigen::Vector2d expected =
       rectifier.camera().Project(rectifier.rectified_from_left() * point);
-  EXPECT_LT((mask.outlines[0][0] - expected).norm(), 1e-4);
+  EXPECT_LT((pixel - expected).norm(), 1e-4);
 }
 
 TEST(StereoRectifier, ARectifiedPairStaysAsItIs) {
@@ -82,8 +81,8 @@ TEST(StereoRectifier, ARectifiedPairStaysAsItIs) {
   const StereoRectifier rectifier(pair, "test");
   EXPECT_DOUBLE_EQ(rectifier.camera().bf, 50.0);
   const cv::Mat image(480, 640, CV_8UC1, cv::Scalar(7));
-  EXPECT_EQ(rectifier.RectifyLeft(image).data, image.data);
-  EXPECT_EQ(rectifier.RectifyRight(image).data, image.data);
+  EXPECT_EQ(rectifier.Rectify(image, ImageSide::kLeft).data, image.data);
+  EXPECT_EQ(rectifier.Rectify(image, ImageSide::kRight).data, image.data);
 }
 
 TEST(StereoRectifier, PairsThatCannotBeRectifiedAreRefused) {

@@ -66,16 +66,13 @@ TEST_F(MaskAll, IsResizedAsTheImagesAre) {
 
 // Each image of a pair is rectified in its own way.
 TEST_F(MaskAll, IsRectifiedAsTheImagesAre) {
-  const auto moved = [](int columns) {
-    return [columns](const cv::Mat& mask) {
-      cv::Mat rectified(mask.size(), CV_8UC1, cv::Scalar(0));
-      mask.colRange(columns, mask.cols).copyTo(rectified.colRange(0, mask.cols - columns));
-      rectified.col(mask.cols - columns - 1).setTo(100);  // between used and ignored
-      return rectified;
-    };
-  };
-  sequence_.fit_mask_all = moved(4);
-  sequence_.fit_right_mask_all = moved(7);
+  sequence_.warps = {{.image = [](const cv::Mat& mask, ImageSide side, bool /*is_nearest*/) {
+    const int columns = side == ImageSide::kLeft ? 4 : 7;
+    cv::Mat rectified(mask.size(), CV_8UC1, cv::Scalar(0));
+    mask.colRange(columns, mask.cols).copyTo(rectified.colRange(0, mask.cols - columns));
+    rectified.col(mask.cols - columns - 1).setTo(100);  // between used and ignored
+    return rectified;
+  }}};
   const auto path = Write(cv::Mat(48, 64, CV_8UC1, cv::Scalar(3)));
   EXPECT_EQ(cv::countNonZero(ReadMaskAll(path, sequence_, camera_)), 48 * 59);
   EXPECT_EQ(cv::countNonZero(ReadMaskAll(path, sequence_, camera_, ImageSide::kRight)), 48 * 56);

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hullslam/masks/mask_source.h"
 #include "support/expect_error.h"
@@ -32,9 +32,9 @@ ImageSequence MadeSequence() {
 }
 
 // What is printed for masks that all are a rectangle of class 41 with these corners, in shares.
-// `fit_mask` moves them from the images as read to the rectified ones.
+// `warps` move them from the images as read to the rectified ones.
 std::string WarningOf(double x0, double y0, double x1, double y1,
-                      std::function<void(InstanceMask&)> fit_mask = nullptr) {
+                      std::vector<ImageWarp> warps = {}) {
   const TemporaryFolder folder;
   const auto text = [](double value) { return " " + std::to_string(value); };
   for (int i = 0; i < 7; ++i) {
@@ -42,7 +42,7 @@ std::string WarningOf(double x0, double y0, double x1, double y1,
                                                  text(x1) + text(y1) + text(x0) + text(y1) + "\n");
   }
   ImageSequence sequence = MadeSequence();
-  sequence.fit_mask = std::move(fit_mask);
+  sequence.warps = std::move(warps);
   const SequenceMasks masks({folder.path(), "yolo-seg", 640, 480}, MaskFrames(sequence));
   testing::internal::CaptureStderr();
   try {
@@ -64,11 +64,9 @@ TEST(InputWarningsTest, MasksThatFitTheTurnedImagesAreNoticed) {
 
 // Rectification moves the images by 40 px to the right.
 TEST(InputWarningsTest, MasksOfRectifiedImagesAreRefused) {
-  const auto move = [](InstanceMask& mask) {
-    for (Eigen::Vector2d& point : mask.outlines.front()) {
-      point.x() += 40.0;
-    }
-  };
+  const std::vector<ImageWarp> move = {{.pixel = [](const Eigen::Vector2d& pixel, ImageSide) {
+    return Eigen::Vector2d(pixel.x() + 40.0, pixel.y());
+  }}};
   EXPECT_EQ(WarningOf(60.0 / 640, 60.0 / 480, 260.0 / 640, 160.0 / 480, move), "");
   ExpectInputError([&] { WarningOf(100.0 / 640, 60.0 / 480, 300.0 / 640, 160.0 / 480, move); },
                    {"fit the rectified or resized images", "expected masks of the images as read"});

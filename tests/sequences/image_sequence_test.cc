@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -73,6 +74,44 @@ TEST(ReadGroundtruth, ConvertedPosesReplaceTheFile) {
   sequence.converted_groundtruth.reset();
   sequence.groundtruth = folder.path() / "none.txt";
   ExpectInputError([&] { ReadGroundtruth(sequence); }, {"none.txt", "No such file"});
+}
+
+TEST(AddWarp, StepsAreDoneInTheirOrder) {
+  ImageSequence sequence;
+  const auto add = [&](const Eigen::Vector3d& axis, double scale, double offset, cv::Size before) {
+    AddWarp({.image = [=](const cv::Mat& image, ImageSide,
+                          bool) { return cv::Mat(scale * image + cv::Scalar::all(offset)); },
+             .pixel = [=](const Eigen::Vector2d& pixel,
+                          ImageSide) { return Eigen::Vector2d(scale * pixel.array() + offset); },
+             .after_from_before =
+                 Rigid3(Eigen::Quaterniond(Eigen::AngleAxisd(0.3, axis)), Eigen::Vector3d::Zero()),
+             .size_before = before},
+            sequence);
+  };
+  const PinholeCamera camera{.width = 64, .height = 48};
+  sequence.load = [](const FramePaths&, const PinholeCamera& read) {
+    ImageInput image;
+    image.grey = cv::Mat(read.height, read.width, CV_8UC1, cv::Scalar(5));
+    return image;
+  };
+  add(Eigen::Vector3d::UnitX(), 1.0, 3.0, {32, 24});
+  add(Eigen::Vector3d::UnitZ(), 2.0, 0.0, {});
+  EXPECT_EQ(SizeAsRead(sequence, camera), cv::Size(32, 24));
+  const ImageInput image = sequence.load({}, camera);
+  EXPECT_EQ(image.grey.size(), cv::Size(32, 24)) << "the loader reads images of this size";
+  EXPECT_EQ(image.grey.at<uint8_t>(0, 0), 16);
+  EXPECT_TRUE(image.depth.empty());
+  std::vector<InstanceMask> masks(1);
+  masks[0].outlines = {{{5.0, 1.0}}};
+  FitMasks(sequence.warps, ImageSide::kRight, masks);
+  EXPECT_EQ(masks[0].outlines[0][0], Eigen::Vector2d(16.0, 8.0));
+  const Eigen::Quaterniond turn =
+      sequence.warps[1].after_from_before->rotation * sequence.warps[0].after_from_before->rotation;
+  const Trajectory read = AsRead(sequence, {{1.0, Rigid3()}});
+  EXPECT_LT(read[0].world_from_cam.rotation.angularDistance(turn), 1e-12);
+  EXPECT_LT(AsLoaded(sequence, read)[0].world_from_cam.rotation.angularDistance(
+                Eigen::Quaterniond::Identity()),
+            1e-7);
 }
 
 }  // namespace

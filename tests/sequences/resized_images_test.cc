@@ -44,13 +44,13 @@ TEST(ResizedImages, ImagesDepthAndMasksHaveTheNewSize) {
     EXPECT_TRUE(depth == 1000 || depth == 5000) << depth;
   }
   EXPECT_EQ(sequence.load_colour({}).size(), cv::Size(4, 2));
-  InstanceMask mask;
-  mask.outlines = {{{-0.5, -0.5}, {7.5, -0.5}, {7.5, 3.5}}};
-  sequence.fit_mask(mask);
-  EXPECT_EQ(mask.outlines[0][2], Eigen::Vector2d(3.5, 1.5));
-  EXPECT_EQ(mask.outlines[0][0], Eigen::Vector2d(-0.5, -0.5));
+  std::vector<InstanceMask> masks(1);
+  masks[0].outlines = {{{-0.5, -0.5}, {7.5, -0.5}, {7.5, 3.5}}};
+  FitMasks(sequence.warps, ImageSide::kLeft, masks);
+  EXPECT_EQ(masks[0].outlines[0][2], Eigen::Vector2d(3.5, 1.5));
+  EXPECT_EQ(masks[0].outlines[0][0], Eigen::Vector2d(-0.5, -0.5));
   EXPECT_EQ(sequence.choices.at("resized_from"), "8x4");
-  EXPECT_EQ(sequence.read_width, 8);
+  EXPECT_EQ(SizeAsRead(sequence, kSmall), cv::Size(8, 4));
 }
 
 TEST(ResizedImages, TheKeptSizeIsReadAgain) {
@@ -59,7 +59,7 @@ TEST(ResizedImages, TheKeptSizeIsReadAgain) {
   EXPECT_EQ(sequence.load({}, kSmall).grey.size(), cv::Size(4, 2));
   ImageSequence same = Made();
   ResizeImages("", kSmall, same);
-  EXPECT_EQ(same.read_width, 0);
+  EXPECT_TRUE(same.warps.empty());
   for (const char* const bad : {"8", "8x", "x4", "8x-4", "8x4x", "0x4"}) {
     ExpectInputError([&] { ResizeImages(bad, kSmall, same); }, {"resized_from is", "1280x720"});
   }

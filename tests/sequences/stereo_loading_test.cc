@@ -29,7 +29,8 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
   cv::imwrite(frame.image.string(), left);
   cv::imwrite(frame.right.string(), right);
   ImageSequence sequence;
-  LoadPairs(rectifier, sequence);
+  LoadWithoutDepth(sequence);
+  RectifyPairs(rectifier, sequence);
   const ImageInput pair = sequence.load(frame, rectifier->camera());
   EXPECT_EQ(pair.timestamp, 1.0);
   EXPECT_GT(cv::norm(pair.grey), 0.0);
@@ -49,17 +50,15 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
                 Eigen::Quaterniond::Identity()),
             1e-9)
       << "of the rectified camera";
-  InstanceMask mask;
-  mask.outlines = {{{40.0, 20.0}, {50.0, 20.0}, {50.0, 25.0}}};
-  sequence.fit_mask(mask);
-  EXPECT_GT(
-      pair.grey.at<uint8_t>(cv::Point(40, static_cast<int>(std::lround(mask.outlines[0][0].y())))),
-      100)
+  std::vector<InstanceMask> masks(1);
+  masks[0].outlines = {{{40.0, 20.0}, {50.0, 20.0}, {50.0, 25.0}}};
+  FitMasks(sequence.warps, ImageSide::kLeft, masks);
+  const double row = masks[0].outlines[0][0].y();
+  EXPECT_GT(pair.grey.at<uint8_t>(static_cast<int>(std::lround(row)), 40), 100)
       << "the mask follows the line";
-  InstanceMask right_mask;
-  right_mask.outlines = {{{40.0, 24.0}, {50.0, 24.0}, {50.0, 29.0}}};
-  sequence.fit_right_mask(right_mask);
-  EXPECT_NEAR(right_mask.outlines[0][0].y(), mask.outlines[0][0].y(), 1e-6);
+  masks[0].outlines = {{{40.0, 24.0}, {50.0, 24.0}, {50.0, 29.0}}};
+  FitMasks(sequence.warps, ImageSide::kRight, masks);
+  EXPECT_NEAR(masks[0].outlines[0][0].y(), row, 1e-6);
   PinholeCamera other = rectifier->camera();
   other.width = 40;
   ExpectInputError([&] { sequence.load(frame, other); }, {"left.png", "80x60", "40x60"});
@@ -68,7 +67,8 @@ TEST(StereoLoading, PairsAreRectifiedWithTheirMasks) {
 // TUM-VI has images of 16 bits.
 TEST(StereoLoading, RectifiedPairsNeedNothing) {
   ImageSequence sequence;
-  LoadPairs(nullptr, sequence);
+  LoadWithoutDepth(sequence);
+  RectifyPairs(nullptr, sequence);
   const TemporaryFolder folder;
   const cv::Mat image(60, 80, CV_16UC1, cv::Scalar(0x12F0));
   FramePaths frame{1.0, folder.path() / "left.png"};
@@ -77,7 +77,7 @@ TEST(StereoLoading, RectifiedPairsNeedNothing) {
   const PinholeCamera camera{.fx = 60.0, .fy = 60.0, .width = 80, .height = 60};
   EXPECT_EQ(sequence.load(frame, camera).right.at<uint8_t>(30, 40), 0x12);
   EXPECT_EQ(sequence.load_colour(frame).at<cv::Vec3b>(30, 40), cv::Vec3b(0x12, 0x12, 0x12));
-  EXPECT_EQ(sequence.fit_mask, nullptr);
+  EXPECT_TRUE(sequence.warps.empty());
   EXPECT_TRUE(sequence.choices.empty());
 }
 

@@ -8,6 +8,9 @@
 
 namespace hullslam {
 
+// The camera of a pair that an image is from; a single camera is the left one.
+enum class ImageSide { kLeft, kRight };
+
 // One input frame; depth is registered to the colour image and has its shape, maybe not its size.
 struct ImageInput {
   double timestamp = 0.0;  // seconds

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/frame/instance_mask.h"
+#include "hullslam/frame/image_input.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
@@ -34,11 +34,9 @@ class StereoRectifier {
 
   // The images as read must have the size of the cameras. Those of a pair that is rectified already
   // are returned as they are.
-  cv::Mat RectifyLeft(const cv::Mat& image) const { return Remap(image, left_.maps); }
-  cv::Mat RectifyRight(const cv::Mat& image) const { return Remap(image, right_.maps); }
-  // Moves a mask of the left or of the right image as read into the rectified one.
-  void RectifyLeft(InstanceMask& mask) const { Rectify(left_, mask); }
-  void RectifyRight(InstanceMask& mask) const { Rectify(right_, mask); }
+  cv::Mat Rectify(const cv::Mat& image, ImageSide side) const;
+  // The pixel of the rectified image that shows what this pixel of the image as read shows.
+  Eigen::Vector2d Rectify(const Eigen::Vector2d& pixel, ImageSide side) const;
 
  private:
   struct Maps {
@@ -53,9 +51,8 @@ class StereoRectifier {
     Rigid3 rectified_from_read = {};
     Maps maps = {};
   };
-  static cv::Mat Remap(const cv::Mat& image, const Maps& maps);
   void Turn(const Eigen::Matrix3d& rotation, Eye& eye) const;
-  void Rectify(const Eye& eye, InstanceMask& mask) const;
+  const Eye& EyeOf(ImageSide side) const { return side == ImageSide::kLeft ? left_ : right_; }
 
   Eye left_;
   Eye right_;

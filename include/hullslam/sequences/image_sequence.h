@@ -7,7 +7,9 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
@@ -37,8 +39,25 @@ struct FrameSelection {
 // rejects, or that does not have the size of the camera. Without a depth file the depth is empty.
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera);
 
+// The image of the frame in colour, CV_8UC3 with blue first.
+cv::Mat LoadFrameColour(const FramePaths& frame);
+
 using FrameLoader = std::function<ImageInput(const FramePaths& frame, const PinholeCamera& camera)>;
 using ColourLoader = std::function<cv::Mat(const FramePaths& frame)>;
+
+// A step that changes the images as read, such as rectification.
+struct ImageWarp {
+  // What summary.json tells about the step: an entry of ImageSequence::choices.
+  std::pair<std::string, std::string> choice = {};
+  // Changes an image. In a step that resizes, each pixel gets the value of the nearest one if
+  // `is_nearest`, as for depth and masks.
+  std::function<cv::Mat(const cv::Mat& image, ImageSide side, bool is_nearest)> image = nullptr;
+  // Moves a pixel of the image before the step to its place after it.
+  std::function<Eigen::Vector2d(const Eigen::Vector2d& pixel, ImageSide side)> pixel = nullptr;
+  // The rotation of the left camera, if the step turns it; the centre is the same.
+  std::optional<Rigid3> after_from_before = std::nullopt;
+  cv::Size size_before = {};  // px; empty if the step keeps the size
+};
 
 // The frames of a data set of any kind. The function that opens it checks everything that needs no
 // decoding.
@@ -63,24 +82,23 @@ struct ImageSequence {
   std::map<std::string, std::string> choices = {};
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
-  // Decodes the image of a frame in colour, CV_8UC3 with blue first. To be called like `load`. Null
-  // if the images are files of their own.
-  ColourLoader load_colour = nullptr;
-  // Moves a mask of the image as read into the image that `load` gives. Null if they are the same.
-  std::function<void(InstanceMask&)> fit_mask = nullptr;
-  // The same for the right image.
-  std::function<void(InstanceMask&)> fit_right_mask = nullptr;
-  // The same for one mask of all images, 0 or 255, or of all right images. The result may have
-  // values between.
-  std::function<cv::Mat(const cv::Mat&)> fit_mask_all = nullptr;
-  std::function<cv::Mat(const cv::Mat&)> fit_right_mask_all = nullptr;
-  // The rotation of the camera of the images that `load` gives, if it turns them; the centre is the
-  // same. The poses that a run writes are those of the camera as read.
-  std::optional<Rigid3> cam_from_read = std::nullopt;
-  // The size of the images as read, px, if `load` resizes them; else 0.
-  int read_width = 0;
-  int read_height = 0;
+  // Decodes the image of a frame in colour. To be called like `load`.
+  ColourLoader load_colour = LoadFrameColour;
+  // The steps, in their order, by which both loaders change the images as read (AddWarp()). The
+  // masks that a run reads and the poses that it writes are those of the images as read.
+  std::vector<ImageWarp> warps = {};
 };
+
+// Adds a step at the end: to the warps, the choices and both loaders.
+void AddWarp(ImageWarp warp, ImageSequence& sequence);
+
+// The size of the images as read, px. `camera` is that of the images that the sequence gives.
+cv::Size SizeAsRead(const ImageSequence& sequence, const PinholeCamera& camera);
+
+// Moves masks of an image as read into the image that a sequence with these warps gives.
+void FitMasks(std::span<const ImageWarp> warps, ImageSide side, std::vector<InstanceMask>& masks);
+// The same for one mask of all images, 0 or 255. The result may have values between.
+cv::Mat FitMaskAll(std::span<const ImageWarp> warps, ImageSide side, cv::Mat mask);
 
 // Poses of the camera of the images that the sequence gives, as those of the camera as read.
 Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);

@@ -154,7 +154,7 @@ void CheckFrame(const CheckMasksArguments& arguments, const OpenedDataset& opene
   try {
     FrameMasks frame = source.Read(names);
     CheckMasks(source, {&names, 1}, RequestOf(arguments.masks, {}, opened.sequence, camera));
-    FitMasks(opened.sequence, frame.masks);
+    FitMasks(opened.sequence.warps, ImageSide::kLeft, frame.masks);
     counts.missing += frame.is_missing ? 1 : 0;
     counts.without_masks += frame.masks.empty() ? 1 : 0;
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;

@@ -198,7 +198,7 @@ bool MapViews(const MapObjectsArguments& arguments, const OpenedDataset& opened,
     const cv::Mat depth =
         has_depth ? ReadView(sequence, frame, options.camera, false).depth : cv::Mat();
     std::vector<InstanceMask> found = masks.Read(view.frame);
-    FitMasks(sequence, found);
+    FitMasks(sequence.warps, ImageSide::kLeft, found);
     run.AddView(frame.timestamp, view.world_from_cam, std::move(found), depth);
     progress.Show(view.frame + 1);
   }

@@ -32,7 +32,6 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
-#include "run/tools/view_images.h"
 #include "run/vocabularies.h"
 #include "util/median.h"
 
@@ -226,7 +225,7 @@ RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
 ImageInput LoadFrame(const RelocaliseInputs& inputs, const PinholeCamera& camera, size_t frame) {
   ImageInput image = inputs.sequence.load(inputs.sequence.frames[frame], camera);
   image.masks = inputs.masks.Read(frame);
-  FitMasks(inputs.sequence, image.masks);
+  FitMasks(inputs.sequence.warps, ImageSide::kLeft, image.masks);
   return image;
 }
 

@@ -23,7 +23,6 @@
 #include "run/segment_record.h"
 #include "run/segmenter_arguments.h"
 #include "run/tools/commands.h"
-#include "sequences/frame_colour.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -75,7 +74,7 @@ void SegmentFrame(const ImageSequence& sequence, const FramePaths& frame, const 
                   Segmenter& segmenter, SegmentCounts& counts) {
   cv::Mat image;
   try {
-    image = ReadFrameColour(sequence, frame);
+    image = sequence.load_colour(frame);
   } catch (const InputError& error) {
     counts.unread.emplace_back(error.what());
     return;

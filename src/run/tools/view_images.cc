@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/tools/view_images.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -10,16 +9,24 @@
 #include "sequences/image_file.h"
 
 namespace hullslam {
+namespace {
+
+// Whether the images are files of their own, which are used as they are.
+bool AreFiles(const ImageSequence& sequence) {
+  return sequence.load.target<ImageInput (*)(const FramePaths&, const PinholeCamera&)>() != nullptr;
+}
+
+}  // namespace
 
 bool HasImage(const ImageSequence& sequence, const FramePaths& frame) {
   std::error_code error;
-  return sequence.load_colour != nullptr || std::filesystem::exists(frame.image, error);
+  return !AreFiles(sequence) || std::filesystem::exists(frame.image, error);
 }
 
 ViewImages ReadView(const ImageSequence& sequence, const FramePaths& frame,
                     const PinholeCamera& camera, bool with_image) {
   ViewImages view;
-  if (sequence.load_colour == nullptr) {  // the images are files, which are read one by one
+  if (AreFiles(sequence)) {  // which are read one by one
     view.grey = with_image && HasImage(sequence, frame) ? ReadGreyImage(frame.image) : cv::Mat();
     view.depth = frame.depth.empty() ? cv::Mat() : ReadDepthImage(frame.depth);
   } else if (with_image || !frame.depth.empty()) {
@@ -28,12 +35,6 @@ ViewImages ReadView(const ImageSequence& sequence, const FramePaths& frame,
   }
   view.depth = FitDepth(view.depth, {camera.width, camera.height});
   return view;
-}
-
-void FitMasks(const ImageSequence& sequence, std::vector<InstanceMask>& masks) {
-  if (sequence.fit_mask != nullptr) {
-    std::ranges::for_each(masks, sequence.fit_mask);
-  }
 }
 
 }  // namespace hullslam

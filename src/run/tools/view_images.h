@@ -2,7 +2,6 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
-#include <vector>
 
 #include "hullslam/sequences/image_sequence.h"
 
@@ -21,8 +20,5 @@ bool HasImage(const ImageSequence& sequence, const FramePaths& frame);
 // ImageSequence::load refuses.
 ViewImages ReadView(const ImageSequence& sequence, const FramePaths& frame,
                     const PinholeCamera& camera, bool with_image);
-
-// Moves masks of the image as read into the image that the sequence gives.
-void FitMasks(const ImageSequence& sequence, std::vector<InstanceMask>& masks);
 
 }  // namespace hullslam
