@@ -136,35 +136,20 @@ OpenedDataset OpenStereoBag(const DatasetRequest& request) {
   BagSequenceOptions options = OptionsOf(request.choices);
   options.need_camera = request.settings.empty();
   options.selection = request.selection;
-  OpenedDataset opened;
-  std::shared_ptr<const StereoRectifier> rectifier;
-  if (!options.need_camera) {
-    opened.settings = LoadSettings(request.settings, request.preset, request.overrides);
-    rectifier = RectifierOfSettings(request.settings, opened.settings, false);
-  }
-  BagPairs bag = OpenBagPairs(request.path, options, rectifier);
-  if (options.need_camera) {
-    opened.settings =
-        LoadSettings(*bag.calibration, request.path.string(), request.preset, request.overrides);
-    opened.settings.options.camera = bag.calibration->camera;  // as the images are rectified
-  } else {
-    bag.notes.push_back(DescribeGivenSettings(request.settings));
-  }
-  if (rectifier != nullptr) {
-    opened.settings.options.camera = rectifier->camera();
-    bag.images.choices["calibration"] = fs::absolute(request.settings).string();
-  }
-  AddWarnings(std::move(bag.warnings), bag.images);
-  opened.sequence = std::move(bag.images);
-  opened.notes = std::move(bag.notes);
-  return opened;
+  return OpenPairs(request, request.settings, false,
+                   [&](const auto& rectifier, OpenedDataset& opened) {
+                     BagPairs bag = OpenBagPairs(request.path, options, rectifier);
+                     AddWarnings(std::move(bag.warnings), bag.images);
+                     opened.sequence = std::move(bag.images);
+                     opened.notes = std::move(bag.notes);
+                     return bag.calibration.value_or(CameraCalibration());
+                   });
 }
 
 ImageSequence OpenStereoBagImages(const ImagesRequest& request) {
   BagSequenceOptions options = OptionsOf(request.choices, request.origin);
   options.need_camera = !options.info_topic.empty();
-  return OpenBagPairs(request.path, options, ReadRectifier(TextOf(request.choices, "calibration")))
-      .images;
+  return OpenBagPairs(request.path, options, RectifierOfRun(request, false)).images;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,16 +32,21 @@ std::string DescribeGivenSettings(const std::filesystem::path& file);
 // Reads the file of DatasetRequest::settings or, if there is none, takes the calibration.
 LoadedSettings SettingsOf(const DatasetRequest& request, const CameraCalibration& calibration);
 
-// The rectifier of a file of settings or of a calibration; null without a file. MakePairRectifier()
-// is for data sets whose own calibration the file replaces.
-std::shared_ptr<const StereoRectifier> ReadRectifier(const std::string& calibration);
-std::shared_ptr<const StereoRectifier> ReadPairRectifier(const std::string& calibration);
+// Opens the pairs of a data set and adds them and the notes about them. The pairs are rectified by
+// this rectifier or, if it is null, by the calibration of the data set, if it has one. Returns that
+// calibration, of the rectified images.
+using PairOpener = std::function<CameraCalibration(
+    const std::shared_ptr<const StereoRectifier>& rectifier, OpenedDataset& opened)>;
 
-// The rectifier that settings of a stereo camera ask for (MakeRectifier(), MakePairRectifier()).
-// Throws InputError if they have no baseline, or if they ask for images that are rectified and
-// resized.
-std::shared_ptr<const StereoRectifier> RectifierOfSettings(const std::filesystem::path& file,
-                                                           const LoadedSettings& settings,
-                                                           bool replaces_calibration);
+// Opens the pairs of any data set. `file` has the settings; empty: the calibration of the data set
+// is used. With `replaces_calibration` (MakePairRectifier()), the file takes the place of such a
+// calibration. Throws InputError if the file has no baseline, if it asks for images that are
+// rectified and resized, and for a rectified camera that cannot be real.
+OpenedDataset OpenPairs(const DatasetRequest& request, const std::filesystem::path& file,
+                        bool replaces_calibration, const PairOpener& open);
+
+// The rectifier that OpenPairs() has used, from the choices of a run; null without one.
+std::shared_ptr<const StereoRectifier> RectifierOfRun(const ImagesRequest& request,
+                                                      bool replaces_calibration);
 
 }  // namespace hullslam

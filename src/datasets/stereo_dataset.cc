@@ -3,7 +3,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,14 +19,10 @@ namespace fs = std::filesystem;
 
 using Rectifier = std::shared_ptr<const StereoRectifier>;
 
-std::string CalibrationOf(const ImagesRequest& request) {
-  return TextOf(request.choices, "calibration");
-}
-
 // ---- data sets whose files have the calibration of the pair
 
 // Opens pairs with a rectifier of the user's settings, or with the calibration of the data set.
-using OpenPairs = StereoSequence (*)(const fs::path&, const FrameSelection&, Rectifier);
+using OpenSequence = StereoSequence (*)(const fs::path&, const FrameSelection&, Rectifier);
 
 StereoSequence OpenKitti(const fs::path& folder, const FrameSelection& selection,
                          Rectifier rectifier) {
@@ -35,28 +30,16 @@ StereoSequence OpenKitti(const fs::path& folder, const FrameSelection& selection
 }
 
 // `source` names the files of the calibration.
-OpenedDataset OpenCalibrated(const DatasetRequest& request, const char* source, OpenPairs open) {
-  std::optional<LoadedSettings> given;
-  Rectifier rectifier;
-  if (!request.settings.empty()) {
-    given = LoadSettings(request.settings, request.preset, request.overrides);
-    rectifier = RectifierOfSettings(request.settings, *given, true);
-  }
-  StereoSequence sequence = open(request.path, request.selection, rectifier);
-  // The images are rectified to this camera, whose size and numbers are checked.
-  const PinholeCamera camera = MakeSettings(sequence.calibration, request.path.string()).camera;
-  OpenedDataset opened{
-      .settings = given ? std::move(*given) : SettingsOf(request, sequence.calibration),
-      .sequence = std::move(sequence.images),
-      .notes = {}};
-  opened.settings.options.camera = camera;
-  if (rectifier != nullptr) {
-    opened.notes = {DescribeGivenSettings(request.settings)};
-    opened.sequence.choices["calibration"] = fs::absolute(request.settings).string();
-  } else {
-    opened.notes = {DescribeSettings(source, "the cameras of the sequence")};
-  }
-  return opened;
+OpenedDataset OpenCalibrated(const DatasetRequest& request, const char* source, OpenSequence open) {
+  return OpenPairs(request, request.settings, true,
+                   [&](const Rectifier& rectifier, OpenedDataset& opened) {
+                     StereoSequence pairs = open(request.path, request.selection, rectifier);
+                     opened.sequence = std::move(pairs.images);
+                     if (request.settings.empty()) {
+                       opened.notes = {DescribeSettings(source, "the cameras of the sequence")};
+                     }
+                     return pairs.calibration;
+                   });
 }
 
 DatasetHelp HelpOfEurocStereo(SensorKind /*sensor*/) {
@@ -80,7 +63,7 @@ OpenedDataset OpenEurocStereo(const DatasetRequest& request) {
 }
 
 ImageSequence OpenEurocStereoImages(const ImagesRequest& request) {
-  return OpenEurocPairs(request.path, {}, ReadPairRectifier(CalibrationOf(request))).images;
+  return OpenEurocPairs(request.path, {}, RectifierOfRun(request, true)).images;
 }
 
 DatasetHelp HelpOfKitti(SensorKind /*sensor*/) {
@@ -108,7 +91,7 @@ OpenedDataset OpenKittiStereo(const DatasetRequest& request) {
 }
 
 ImageSequence OpenKittiStereoImages(const ImagesRequest& request) {
-  return OpenKittiPairs(request.path, {}, ReadPairRectifier(CalibrationOf(request))).images;
+  return OpenKittiPairs(request.path, {}, RectifierOfRun(request, true)).images;
 }
 
 // ---- folders or videos of pairs, whose calibration is a settings file
@@ -157,29 +140,24 @@ fs::path FindFolderSettings(const DatasetRequest& request) {
 
 OpenedDataset OpenFolder(const DatasetRequest& request) {
   const fs::path file = FindFolderSettings(request);
-  OpenedDataset opened{
-      .settings = LoadSettings(file, request.preset, request.overrides),
-      .sequence = {},
-      .notes = {request.settings.empty() ? DescribeSettings(file, "of the sequence")
-                                         : DescribeGivenSettings(file)}};
-  SystemOptions& options = opened.settings.options;
-  const Rectifier rectifier = RectifierOfSettings(file, opened.settings, false);
-  opened.sequence = OpenStereoFolder(request.path, {.rectifier = rectifier,
-                                                    .frames_per_second = options.frames_per_second,
-                                                    .selection = request.selection});
-  opened.sequence.choices["frames_per_second"] = fmt::format("{}", options.frames_per_second);
-  if (rectifier != nullptr) {
-    options.camera = rectifier->camera();
-    opened.sequence.choices["calibration"] = fs::absolute(file).string();
-  }
-  return opened;
+  return OpenPairs(request, file, false, [&](const Rectifier& rectifier, OpenedDataset& opened) {
+    const double rate = opened.settings.options.frames_per_second;
+    opened.sequence = OpenStereoFolder(
+        request.path,
+        {.rectifier = rectifier, .frames_per_second = rate, .selection = request.selection});
+    opened.sequence.choices["frames_per_second"] = fmt::format("{}", rate);
+    if (request.settings.empty()) {
+      opened.notes = {DescribeSettings(file, "of the sequence")};
+    }
+    return CameraCalibration();
+  });
 }
 
 ImageSequence OpenFolderImages(const ImagesRequest& request) {
   StereoFolderOptions options;
   options.frames_per_second = NumberOf(request.choices, "frames_per_second", request.origin)
                                   .value_or(options.frames_per_second);
-  options.rectifier = ReadRectifier(CalibrationOf(request));
+  options.rectifier = RectifierOfRun(request, false);
   return OpenStereoFolder(request.path, options);
 }
 
