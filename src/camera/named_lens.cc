@@ -32,6 +32,7 @@ constexpr std::array<NamedModel, 8> kModels = {{
 constexpr std::array<Field, 8> kBrownFields = {
     &PinholeCamera::k1, &PinholeCamera::k2, &PinholeCamera::p1, &PinholeCamera::p2,
     &PinholeCamera::k3, &PinholeCamera::k4, &PinholeCamera::k5, &PinholeCamera::k6};
+
 bool AreZero(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0.0; });
 }

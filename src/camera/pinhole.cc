@@ -17,9 +17,9 @@ constexpr double kMostFocalLength = 1e5;
 constexpr double kMostPrincipalPoint = 1e5;
 constexpr double kLeastBaselineTimesFx = 1e-3;  // m px
 constexpr double kMostBaselineTimesFx = 1e6;
-const Range kXi = Range::Between(-0.9, 1.0);
-const Range kAlpha = Range::Between(0.0, 1.0);
-const Range kBeta = Range::Between(1e-3, 1e3);
+
+Range RangeOfXi() { return Range::Between(-0.9, 1.0); }
+Range RangeOfBeta() { return Range::Between(1e-3, 1e3); }
 
 std::string Describe(const char* key, double value, const Range& range) {
   return range.Contains(value) ? std::string()
@@ -55,10 +55,10 @@ void PinholeCamera::Bind(OptionTable& options) {
   scope.Add("k4", &k4, Range::Any(), "radial divisor; the fourth of a fisheye");
   scope.Add("k5", &k5, Range::Any(), "radial divisor");
   scope.Add("k6", &k6, Range::Any(), "radial divisor");
-  scope.AddEnum("type", &lens, {"PinHole", "KannalaBrandt8", "DoubleSphere", "EUCM"}, "lens");
-  scope.Add("xi", &xi, kXi, "distance of the spheres of DoubleSphere");
-  scope.Add("alpha", &alpha, kAlpha, "share of DoubleSphere and EUCM");
-  scope.Add("beta", &beta, kBeta, "shape of EUCM");
+  scope.AddEnum("type", &lens, LensTypes(), "lens");
+  scope.Add("xi", &xi, RangeOfXi(), "distance of the spheres of DoubleSphere");
+  scope.Add("alpha", &alpha, Range::Share(), "share of DoubleSphere and EUCM");
+  scope.Add("beta", &beta, RangeOfBeta(), "shape of EUCM");
   scope.Add("width", &width, Range::Between(16, 16384), "width of the images, px");
   scope.Add("height", &height, Range::Between(16, 16384), "height of the images, px");
   scope.Add("bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
@@ -135,8 +135,10 @@ std::string PinholeCamera::FindFault() const {
     double value;
     Range range;
   };
+  // Kalibr's focal lengths are divided by 1 + xi, so xi comes first.
   const std::array<Number, 16> numbers = {
-      {{"Camera.fx", fx, focal_length},
+      {{"Camera.xi", xi, RangeOfXi()},
+       {"Camera.fx", fx, focal_length},
        {"Camera.fy", fy, focal_length},
        {"Camera.cx", cx, principal_point},
        {"Camera.cy", cy, principal_point},
@@ -149,9 +151,8 @@ std::string PinholeCamera::FindFault() const {
        {"Camera.k4", k4, Range::Any()},
        {"Camera.k5", k5, Range::Any()},
        {"Camera.k6", k6, Range::Any()},
-       {"Camera.xi", xi, kXi},
-       {"Camera.alpha", alpha, kAlpha},
-       {"Camera.beta", beta, kBeta}}};
+       {"Camera.alpha", alpha, Range::Share()},
+       {"Camera.beta", beta, RangeOfBeta()}}};
   for (const Number& number : numbers) {
     std::string fault = Describe(number.key, number.value, number.range);
     if (!fault.empty()) {

@@ -142,6 +142,14 @@ const WideModel& ModelOf(const PinholeCamera& camera) {
 
 std::span<const WideModel> WideModels() { return kWideModels; }
 
+std::vector<std::string> LensTypes() {
+  std::vector<std::string> types = {"PinHole"};
+  for (const WideModel& model : kWideModels) {
+    types.emplace_back(model.type);
+  }
+  return types;
+}
+
 const WideModel* FindWideModel(LensModel lens) {
   const auto* const found =
       std::find_if(kWideModels.begin(), kWideModels.end(),

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "camera/lens_point.h"
 #include "hullslam/camera/pinhole.h"
@@ -35,7 +37,9 @@ struct WideModel {
   LensRadius (*radius)(const PinholeCamera& camera, double angle);
   double (*largest)(const PinholeCamera& camera, double limit);  // see LargestAngle()
 };
-std::span<const WideModel> WideModels();
+std::span<const WideModel> WideModels();  // in the order of LensModel
+// The values of Camera.type in the order of LensModel: "PinHole", then those of WideModels().
+std::vector<std::string> LensTypes();
 // Null for a pinhole, and for a name that no model has in `names`, in upper or lower case.
 const WideModel* FindWideModel(LensModel lens);
 const WideModel* FindWideModel(std::string_view name);

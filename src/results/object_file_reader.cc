@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The readers of results/object_file.h.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <map>
@@ -42,7 +43,7 @@ PinholeCamera ReadCamera(const JsonNode& node) {
   if (node.Has("type")) {
     const WideModel* const model = FindWideModel(node.At("type").Text());
     if (model == nullptr) {
-      node.At("type").Fail("\"KannalaBrandt8\", \"DoubleSphere\" or \"EUCM\"");
+      node.At("type").Fail(fmt::format("one of {}", fmt::join(LensTypes(), ", ")));
     }
     camera.lens = model->lens;
     for (const WideModel::Coefficient& one : model->coefficients) {

@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "camera/wide_lens.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 
@@ -83,7 +84,7 @@ const Entry* FindEntry(std::string_view name) {
   return name.starts_with("IMU.") ? &kImu : nullptr;
 }
 
-void ExpectText(const WrittenSetting& setting, std::initializer_list<std::string_view> choices,
+void ExpectText(const WrittenSetting& setting, const std::vector<std::string>& choices,
                 std::string_view reason) {
   std::string_view text = SingleValue(setting);
   if (text.size() > 1 && text.starts_with('"')) {  // a number in quotes
@@ -93,6 +94,13 @@ void ExpectText(const WrittenSetting& setting, std::initializer_list<std::string
     throw InputError(fmt::format("{}: {} is '{}', expected \"{}\"{}", setting.origin, setting.name,
                                  text, fmt::join(choices, "\" or \""), reason));
   }
+}
+
+// Ours and ORB-SLAM3's name for images without distortion.
+std::vector<std::string> CameraTypes() {
+  std::vector<std::string> types = LensTypes();
+  types.insert(types.begin() + 1, "Rectified");
+  return types;
 }
 
 double PositiveNumber(const WrittenSetting& setting) {
@@ -125,8 +133,7 @@ class Translator {
         ExpectText(setting, {"1.0"}, "");
         return;
       case Kind::kModel:
-        ExpectText(setting, {"PinHole", "Rectified", "KannalaBrandt8", "DoubleSphere", "EUCM"},
-                   "; HullSLAM has no other camera model");
+        ExpectText(setting, CameraTypes(), "; HullSLAM has no other camera model");
         is_rectified_ = setting.text == "Rectified";
         if (!is_rectified_) {
           setting.key = "Camera.type";

@@ -156,9 +156,10 @@ bool IsStereoKey(std::string_view key) {
 }
 
 bool HasRightCamera(const fs::path& file) {
-  const YamlMap settings(file, "settings");
-  return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings) ||
-         settings.Has("value0") || IsInfoPair(file, settings);
+  const YAML::Node root = ReadYaml(file);
+  const YamlMap settings(file, "settings", root);
+  return IsOrb2Pair(settings) || IsOrb3Pair(settings) || IsCamchain(settings) || IsBasalt(root) ||
+         IsInfoPair(file, settings);
 }
 
 std::optional<StereoCalibration> ReadStereoPair(const fs::path& file, const PinholeCamera& camera) {

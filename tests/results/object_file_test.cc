@@ -8,6 +8,7 @@
 
 #include "hullslam/util/check.h"
 #include "support/expect_error.h"
+#include "support/fisheye_camera.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -285,6 +286,16 @@ TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   ExpectRefusal(observation + "lines", {{1, 1, 0, 0}},
                 {at + "lines[0] is [1,1,0,0]", "unit length"});
   ExpectRefusal(observation + "lines", {{1, 0}}, {at + "lines[0]", "4 finite numbers"});
+}
+
+TEST(ObjectFile, KeepsTheLens) {
+  for (const PinholeCamera& camera :
+       {FisheyeCamera(), DoubleSphereCamera(), ExtendedUnifiedCamera()}) {
+    ObjectResults report = MakeReport();
+    report.camera = camera;
+    EXPECT_EQ(WriteAndRead(report).camera, camera);
+  }
+  ExpectRefusal("/camera/type", "Omni", {"camera.type is \"Omni\"", "DoubleSphere, EUCM"});
 }
 
 TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {
