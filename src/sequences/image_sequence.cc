@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -102,9 +101,9 @@ cv::Mat FitMaskAll(std::span<const ImageWarp> warps, ImageSide side, cv::Mat mas
 }
 
 Trajectory AsRead(const ImageSequence& sequence, Trajectory poses) {
-  for (const ImageWarp& warp : sequence.warps | std::views::reverse) {
-    if (warp.after_from_before) {
-      poses = OfOtherCamera(std::move(poses), *warp.after_from_before);
+  for (auto warp = sequence.warps.rbegin(); warp != sequence.warps.rend(); ++warp) {
+    if (warp->after_from_before) {
+      poses = OfOtherCamera(std::move(poses), *warp->after_from_before);
     }
   }
   return poses;
