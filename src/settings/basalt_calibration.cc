@@ -2,6 +2,7 @@
 #include "settings/basalt_calibration.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 #include "settings/stereo_settings.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <Eigen/Geometry>
 #include <string>
