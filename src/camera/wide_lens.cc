@@ -122,7 +122,7 @@ constexpr std::array<std::string_view, 2> kExtendedUnifiedNames = {"eucm", "exte
 constexpr std::array<Coefficient, 2> kExtendedUnifiedCoefficients = {
     {{"alpha", &PinholeCamera::alpha}, {"beta", &PinholeCamera::beta}}};
 
-constexpr std::array<WideModel, 3> kWideModels = {{
+constexpr auto kWideModels = std::to_array<WideModel>({
     {LensModel::kKannalaBrandt, "KannalaBrandt8", "a fisheye lens (Kannala-Brandt)",
      kKannalaBrandtNames, kKannalaBrandtCoefficients, RadiusOfKannalaBrandt,
      LargestOfKannalaBrandt},
@@ -131,7 +131,7 @@ constexpr std::array<WideModel, 3> kWideModels = {{
     {LensModel::kExtendedUnified, "EUCM", "a fisheye lens (extended unified model)",
      kExtendedUnifiedNames, kExtendedUnifiedCoefficients, RadiusOfExtendedUnified,
      LargestOfExtendedUnified},
-}};
+});
 
 const WideModel& ModelOf(const PinholeCamera& camera) {
   const WideModel* const model = FindWideModel(camera.lens);

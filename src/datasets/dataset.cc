@@ -78,7 +78,7 @@ void CheckPairs(const fs::path& path, const ImageSequence& sequence, const Pinho
 }  // namespace
 
 std::span<const Dataset> Datasets() {
-  static const std::array<Dataset, 11> kDatasets = {
+  static const std::array kDatasets = {
       BagDataset(),         StereoBagDataset(),    VslamLabDataset(), EurocDataset(),
       EurocStereoDataset(), KittiLeftDataset(),    KittiDataset(),    IclDataset(),
       TumDataset(),         StereoFolderDataset(), VideoDataset()};

@@ -99,7 +99,7 @@ std::string WriteEuroc(const ExportOptions& options, ExportInput& input) {
   return Counted(input.model.trajectory.size(), "pose");
 }
 
-constexpr std::array<ExportFormat, 7> kFormats = {{
+constexpr auto kFormats = std::to_array<ExportFormat>({
     {"colmap", "a folder with undistorted images and a sparse model with tracks",
      ExportNeed::kImages, WriteColmap},
     {"nerfstudio", "a folder with transforms.json, undistorted images, depths and masks",
@@ -110,7 +110,7 @@ constexpr std::array<ExportFormat, 7> kFormats = {{
     {"ply", "a PLY file with points, cameras and objects", ExportNeed::kScene, WritePly},
     {"kitti", "a text file with a 3 x 4 matrix per pose", ExportNeed::kPoses, WriteKitti},
     {"euroc", "a CSV file with a pose per line", ExportNeed::kPoses, WriteEuroc},
-}};
+});
 
 }  // namespace
 

@@ -143,8 +143,10 @@ class AccuracyTest(unittest.TestCase):
         self.assertIn("changes that are not committed", self.call_main("--accept", code=2)[1])
         self.assertFalse((self.programs / "calls").exists(), "known before the runs")
         self.commit()
-        (self.programs / "git").write_text("abc1234")
-        self.assertIn("the runs are of abc1234, and", self.call_main("--accept", code=2)[1])
+        for build in ("abc1234", self.git("describe", "--always") + "-dirty"):
+            self.out = self.dir / build
+            (self.programs / "git").write_text(build)
+            self.assertIn(f"the runs are of {build}, and", self.call_main("--accept", code=2)[1])
         self.assertFalse((self.dir / "docs").exists())
         self.out = self.dir / "again"
         self.commit()
