@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks which headers the modules of HullSLAM include; fails if one breaks a rule below.
+"""Checks which headers and words the modules of HullSLAM use, and their sizes; fails if one breaks a
+rule below.
 
 1. A module includes only its own headers and headers of modules at strictly lower levels (LEVELS).
 2. Of those modules it includes only the ones that its CMakeLists.txt names in LINKS. A module whose
@@ -8,8 +9,12 @@
 3. A public header (in include/) includes no private header (in src/).
 4. A public header includes no header of CGAL, SuiteSparse or Embree, so that users of the library do
    not need them.
+5. Names of lenses, sensors and data sets stand in the code of few modules only (WORDS).
+6. No folder of the library has more than MOST_FILES files (but for FOLDERS), no file more than
+   MOST_LINES lines, and no part of PARTS more lines than are given there.
 """
 
+import dataclasses
 import pathlib
 import re
 import sys
@@ -41,11 +46,46 @@ LEVELS = {
 }
 PROGRAM_SIDE = {"run"}
 
+
+@dataclasses.dataclass(frozen=True)
+class Word:
+    """A word that only some modules may use in code."""
+    meaning: str
+    pattern: re.Pattern
+    homes: set
+    # Modules that use it today. Others ask the homes in place of it, and so should these. A test
+    # fails if a module is here without need.
+    still: set = frozenset()
+
+
+WORDS = (
+    Word("lens", re.compile(r"\b(IsFisheye|LensModel|\w*Kannala\w*)\b"),
+         {"camera", "files", "settings", "map_files"},
+         {"estimators", "eval", "exports", "frame", "mapping", "objects", "optim", "tracking"}),
+    Word("stereo sensor", re.compile(r"\bkStereo\b"),
+         {"frame", "system", "sequences", "datasets", "map_files"}, {"exports", "run"}),
+    # Also names of formats: of pose files (exports, results), of calibrations (settings); and the tool
+    # of TUM that pairs poses (eval, run).
+    Word("data set", re.compile(r'\b\w*(?<!\bk)(Tum|Icl|Euroc|Kitti)([A-Z]\w*)?\b'
+                                r'|"_?(tum|icl|euroc|kitti)(_\w+)?"'),
+         {"datasets", "sequences"}, {"eval", "exports", "results", "run", "settings"}),
+)
+
+# These numbers may only become smaller.
+MOST_FILES, MOST_LINES = 40, 900
+FOLDERS = {"src/frame": 59, "src/run": 53, "src/objects": 51, "src/tracking": 50, "src/sequences": 46,
+           "src/masks": 41, "src/optim": 41}
+CORE = {module for module, level in LEVELS.items() if level <= LEVELS["system"]} - {"files", "bags"}
+PARTS = {  # name: (modules, lines of src; the goals are 35000 and 4500)
+    "core": (CORE, 37300),
+    "run": (PROGRAM_SIDE, 7300),
+}
+
 KEPT_PRIVATE = re.compile(
     r"CGAL/|embree\d?/|suitesparse/|Eigen/(Cholmod|SPQR|UmfPack|KLU)Support$"
     r"|(cholmod|amd|colamd|camd|ccolamd|cs|umfpack|klu|SuiteSparse)\w*\.(h|hpp)$",
     re.IGNORECASE)
-COMMENT = re.compile(r"#.*")
+COMMENT, COMMENT_IN_CODE = re.compile(r"#.*"), re.compile(r"//.*")
 MODULE_CALL = re.compile(r"\bhullslam_module\(([^)]*)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -155,6 +195,42 @@ def check_file(path, module, public, root, links):
     return faults
 
 
+def words_in(text):
+    """(number of the line, Word, what is written) of all words of WORDS in the code of a file."""
+    for number, line in enumerate(text.splitlines(), 1):
+        for word in WORDS:
+            if found := word.pattern.search(COMMENT_IN_CODE.sub("", line)):
+                yield number, word, found[0]
+
+
+def check_words(path, module, root):
+    return [f"{path.relative_to(root)}:{number}: {text} names a {word.meaning}; only "
+            f"{', '.join(sorted(word.homes))} may (WORDS in check_layers.py)"
+            for number, word, text in words_in(path.read_text(encoding="utf-8"))
+            if module not in word.homes | word.still]
+
+
+def folder_sizes(root):
+    """The number of files in each folder of the library."""
+    paths = [path for path, _, _ in source_files(root)]
+    folders = [path.parent.relative_to(root).as_posix() for path in paths]
+    return {folder: folders.count(folder) for folder in sorted(set(folders))}
+
+
+def check_sizes(root):
+    faults = [f"{folder}: {count} files, at most {FOLDERS.get(folder, MOST_FILES)}"
+              for folder, count in folder_sizes(root).items() if count > FOLDERS.get(folder, MOST_FILES)]
+    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path, _, _ in source_files(root)}
+    faults += [f"{path.relative_to(root)}: {count} lines, at most {MOST_LINES}"
+               for path, count in lines.items() if count > MOST_LINES]
+    for name, (modules, most) in PARTS.items():
+        count = sum(lines[path] for path, module, public in source_files(root)
+                    if module in modules and not public)
+        if count > most:
+            faults.append(f"{name}: {count} lines in src, at most {most} (PARTS in check_layers.py)")
+    return faults
+
+
 def check_tree(root):
     """The faults of the tree at `root`, one line per fault. Finding no files is a fault too."""
     root = pathlib.Path(root).resolve()
@@ -162,8 +238,9 @@ def check_tree(root):
     if not files:
         return [f"{root}: no C++ files in include/hullslam or src"]
     links = declared_links(root)
-    return [line for path, module, public in files
-            for line in check_file(path, module, public, root, links)]
+    faults = [line for path, module, public in files
+              for line in [*check_file(path, module, public, root, links), *check_words(path, module, root)]]
+    return [*faults, *check_sizes(root)]
 
 
 if __name__ == "__main__":

@@ -8,7 +8,8 @@ import unittest
 
 from small_tree import faults_in
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "scripts"))
 import check_layers  # noqa: E402
 
 
@@ -125,6 +126,40 @@ class CheckLayersTest(unittest.TestCase):
 
     def test_includes_in_comments_do_not_count(self):
         self.assertEqual(faults_of({"src/util/a.cc": '// #include "hullslam/map/map.h"\n'}), [])
+
+    def test_words_of_few_modules(self):
+        for text, home in (("if (camera.IsFisheye()) {}", "camera"), ("LensModel lens;", "map_files"),
+                           ("kKannalaBrandt", "settings"), ("SensorKind::kStereo", "frame"),
+                           ("OpenTumSequence(folder);", "sequences"), ("TumDataset()", "datasets"),
+                           ("bool IsKitti(int);", "datasets"), ('name == "euroc_stereo"', "datasets")):
+            with self.subTest(text):
+                self.assert_fault({"src/loop/a.cc": f"\n{text}\n"}, "src/loop/a.cc:2:", "WORDS")
+                self.assert_fault({"include/hullslam/loop/a.h": f"{text}\n"}, "may")
+                self.assertEqual(faults_of({f"src/{home}/a.cc": text + "\n"}), [])
+                self.assertEqual(faults_of({"src/loop/a.cc": f"// {text}\n"}), [])
+        for text in ("Frustum volume;", "PairingRule::kTum", '"a sequence of TUM"', "kStereoPair"):
+            with self.subTest(text):
+                self.assertEqual(faults_of({"src/loop/a.cc": text + "\n"}), [])
+
+    def test_exceptions_are_needed(self):
+        used = {(word.meaning, module) for path, module, _ in check_layers.source_files(TOP)
+                for _, word, _ in check_layers.words_in(path.read_text(encoding="utf-8"))}
+        for word in check_layers.WORDS:
+            idle = {module for module in word.still if (word.meaning, module) not in used}
+            self.assertEqual(idle, set(), f"take these modules out of WORDS: {word.meaning}")
+        sizes = check_layers.folder_sizes(TOP)
+        small = {name for name in check_layers.FOLDERS if sizes.get(name, 0) <= check_layers.MOST_FILES}
+        self.assertEqual(small, set(), "take these folders out of FOLDERS")
+
+    def test_sizes(self):
+        most = check_layers.MOST_FILES
+        files = {f"src/loop/a{i}.h": "\n" for i in range(most)}
+        self.assertEqual(faults_of(files), [])
+        self.assert_fault({**files, "src/loop/b.cc": ""}, f"src/loop: {most + 1} files, at most {most}")
+        self.assertEqual(faults_of({**files, "include/hullslam/loop/b.h": ""}), [])
+        self.assert_fault({"src/loop/a.cc": "\n" * 901}, "src/loop/a.cc: 901 lines, at most 900")
+        most = check_layers.PARTS["run"][1]
+        self.assert_fault({f"src/run/a{i}.cc": "\n" * 900 for i in range(most // 900 + 1)}, "run: ", "PARTS")
 
     def test_empty_tree_fails(self):
         self.assert_fault({}, "no C++ files")
