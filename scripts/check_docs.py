@@ -234,7 +234,7 @@ def program_faults(documents, root):
              if document.name in ("docs/programs.md", "docs/library.md")]
     named = " ".join(code for document in pages
                      for _, code in document.inline_code() + document.code_lines())
-    for path in sorted((root / "Examples").glob("*.cc")):
+    for path in sorted((root / "Examples").rglob("*.cc")):
         if not re.search(rf"\b{path.stem}\b", named):
             yield f"docs/programs.md: lacks the program {path.stem}"
 

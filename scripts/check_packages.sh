@@ -41,13 +41,13 @@ for file in man/man1/hullslam-rgbd_tum.1 man/man1/hullslam.1 bash-completion/com
 done
 
 printf '== Python\n'
-cp "$top/python/examples/sequence.py" "$top/Examples/minimal.cc" "$debian/tmp"
-in_debian "/usr/bin/python3 sequence.py demo/desk --masks demo/desk/masks --output python.txt"
+cp "$top/Examples/library/02_rgbd_with_masks.py" "$top/Examples/library/01_minimal.cc" "$debian/tmp"
+in_debian "/usr/bin/python3 02_rgbd_with_masks.py demo/desk demo/desk/masks python.txt"
 cmp "$debian/tmp/python.txt" "$debian/tmp/demo/run/trajectory.txt"
 
 printf '== pkg-config\n'
 # shellcheck disable=SC2016  # the shell in Debian runs pkg-config
-in_debian 'g++ minimal.cc $(pkg-config --cflags --libs hullslam) -o minimal && ./minimal | tail -n 1'
+in_debian 'g++ 01_minimal.cc $(pkg-config --cflags --libs hullslam) -o minimal && ./minimal | tail -n 1'
 
 bin=$top/build/package/bin
 if [ -x "$bin/rgbd_tum" ]; then

@@ -80,6 +80,10 @@ class Trajectory:
     @property
     def positions(self) -> _Doubles:
         """(N, 3) float64: centres of the camera in the world frame, m."""
+    def interpolate(self, timestamp: float, max_gap: float) -> _Doubles | None:
+        """The (4, 4) pose at a time stamp (s), between its two neighbours. None before the first
+        pose, after the last one, and in a gap longer than `max_gap` (s).
+        """
     def format(self) -> str:
         """The text of a file in TUM's format: timestamp tx ty tz qx qy qz qw."""
     def write(self, path: _Path) -> None:
@@ -206,6 +210,8 @@ class ImageSequence:
     def __len__(self) -> int: ...
     def __getitem__(self, index: int) -> SequenceFrame: ...
     def __iter__(self) -> Iterator[SequenceFrame]: ...
+    def colour(self, index: int) -> _Image:
+        """Decodes the image of a frame in colour: (height, width, 3) uint8, blue first."""
     @property
     def timestamps(self) -> _Doubles:
         """(N,) float64, s."""

@@ -167,10 +167,14 @@ py::array ToArray(const cv::Mat& image) {
   }
   const py::capsule owner(new cv::Mat(image),
                           [](void* pixels) { delete static_cast<cv::Mat*>(pixels); });
-  return {py::dtype(type), std::vector<py::ssize_t>{image.rows, image.cols},
-          std::vector<py::ssize_t>{static_cast<py::ssize_t>(image.step[0]),
-                                   static_cast<py::ssize_t>(image.elemSize())},
-          image.data, owner};
+  std::vector<py::ssize_t> shape = {image.rows, image.cols};
+  std::vector<py::ssize_t> steps = {static_cast<py::ssize_t>(image.step[0]),
+                                    static_cast<py::ssize_t>(image.elemSize())};
+  if (image.channels() > 1) {
+    shape.push_back(image.channels());
+    steps.push_back(static_cast<py::ssize_t>(image.elemSize1()));
+  }
+  return {py::dtype(type), shape, steps, image.data, owner};
 }
 
 py::array_t<double> ToArray(const Rigid3& b_from_a) {

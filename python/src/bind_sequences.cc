@@ -146,6 +146,14 @@ SequenceFrame Load(FrameList& list, py::ssize_t index) {
   });
 }
 
+cv::Mat LoadColour(FrameList& list, py::ssize_t index) {
+  const size_t i = ToIndex(index, list.sequence.frames.size());
+  return WithoutGil([&] {
+    const std::lock_guard lock(list.loading);
+    return list.sequence.load_colour(list.sequence.frames[i]);
+  });
+}
+
 MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list,
                         const std::string& format) {
   return WithoutGil([&] {
@@ -206,6 +214,11 @@ void BindSequences(py::module_& module) {
            "Decodes a frame. Raises InputError for an image that is broken or does not have the\n"
            "size of the settings.")
       .def("__iter__", [](const py::object& list) { return Iterate(list); })
+      .def(
+          "colour",
+          [](FrameList& list, py::ssize_t index) { return ToArray(LoadColour(list, index)); },
+          py::arg("index"),
+          "Decodes the image of a frame in colour: (height, width, 3) uint8, blue first.")
       .def_property_readonly(
           "timestamps",
           [](const FrameList& list) {

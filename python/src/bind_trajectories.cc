@@ -177,6 +177,15 @@ void BindTrajectories(py::module_& module) {
       .def_property_readonly("positions", &PositionsOf,
                              "(N, 3) float64: centres of the camera in the world frame, m.")
       .def(
+          "interpolate",
+          [](const PoseList& list, double timestamp, double max_gap) -> py::object {
+            const std::optional<Rigid3> pose = InterpolatePose(list.poses, timestamp, max_gap);
+            return pose ? py::object(ToArray(*pose)) : py::none();
+          },
+          py::arg("timestamp"), py::arg("max_gap"),
+          "The (4, 4) pose at a time stamp (s), between its two neighbours. None before the first\n"
+          "pose, after the last one, and in a gap longer than `max_gap` (s).")
+      .def(
           "format", [](const PoseList& list) { return FormatTrajectory(list.poses); },
           "The text of a file in TUM's format: timestamp tx ty tz qx qy qz qw.")
       .def(

@@ -35,14 +35,12 @@ TEST_P(Help, TheVersionIsPrinted) {
   EXPECT_NE(result.output.find('.'), std::string::npos) << result.output;
 }
 
-// All programs and commands. The other files of the folder are examples of the library, which take
-// no options.
+// All programs and commands.
 std::vector<std::string> ProgramNames() {
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(SourceFolder() / "Examples")) {
     const std::string name = file.path().stem();
-    const bool is_example = name == "minimal" || name == "objects_of_sequence";
-    if (file.path().extension() == ".cc" && !is_example) {
+    if (file.path().extension() == ".cc") {
       names.push_back(name);
     }
   }

@@ -52,6 +52,8 @@ def test_a_trajectory_keeps_its_numbers(tmp_path):
     assert np.array_equal(trajectory.timestamps, [1.5, 2.0])
     assert np.allclose(trajectory.world_from_cam, [np.eye(4), pose], atol=1e-15)
     assert np.array_equal(trajectory.positions, [[0, 0, 0], [1, 2, 3]])
+    assert np.allclose(trajectory.interpolate(1.75, 1.0)[:3, 3], [0.5, 1.0, 1.5])
+    assert trajectory.interpolate(1.75, 0.1) is None and trajectory.interpolate(2.1, 1.0) is None
     assert trajectory.format().splitlines()[2] == (
         "2.000000 1.000000000 2.000000000 3.000000000 0.000000000 0.000000000 0.149438132 "
         "0.988771078")
@@ -98,6 +100,7 @@ def test_a_sequence_is_read_frame_by_frame(desk, tmp_path):
     width, height = settings.image_size
     assert frame.image.shape == frame.depth.shape == (height, width)
     assert frame.image.dtype == np.uint8 and frame.depth.dtype == np.uint16
+    assert sequence.colour(-1).shape == (height, width, 3)
     assert len(sequence.groundtruth) >= 25
     with pytest.raises(IndexError):
         _ = sequence[25]

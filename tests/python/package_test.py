@@ -48,7 +48,8 @@ def test_the_examples_have_the_types_of_the_stubs(tmp_path):
                                      "hullslam.Settings().tracking.min_inliers = 'a'\n")
     command = [sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache",
                "--ignore-missing-imports"]
-    run(*command[1:], tmp_path / "good.py", *sorted((PYTHON / "examples").glob("*.py")))
+    run(*command[1:], tmp_path / "good.py", PYTHON / "examples" / "video.py",
+        *sorted((ROOT / "Examples" / "library").glob("*.py")))
     bad = subprocess.run([*command, tmp_path / "bad.py"], capture_output=True, text=True, check=False)
     assert bad.returncode == 1 and 'expression has type "str", variable has type "int"' in bad.stdout
 
@@ -107,12 +108,6 @@ def test_the_examples_of_the_documents_run(document, documented_folder):
     assert blocks_of(document)
     for block in blocks_of(document):
         exec(compile(block, document, "exec"), names)  # the blocks of a page follow one another
-
-
-def test_the_example_of_a_sequence(desk, tmp_path):
-    printed = run(PYTHON / "examples" / "sequence.py", desk, "--masks", desk / "masks", "--output",
-                  tmp_path / "a.txt")
-    assert "ATE RMSE 0.00" in printed and (tmp_path / "a.txt").exists()
 
 
 def test_the_example_of_a_video(desk, tmp_path):

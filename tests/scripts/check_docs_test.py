@@ -183,8 +183,8 @@ class LengthsTest(CheckDocsTest):
 
 class ProgramsTest(CheckDocsTest):
     def test_every_program_is_named(self):
-        files = {"Examples/rgbd_tum.cc": "", "Examples/minimal.cc": "",
-                 "docs/library.md": "`Examples/minimal.cc`\n"}
+        files = {"Examples/rgbd_tum.cc": "", "Examples/library/01_minimal.cc": "",
+                 "docs/library.md": "`01_minimal.cc`\n"}
         self.assert_good("", {**files, "docs/programs.md": "`rgbd_tum SEQUENCE`\n"})
         self.assert_fault("`rgbd_tum`\n", "docs/programs.md: lacks the program rgbd_tum",
                           files={**files, "docs/programs.md": "rgbd_tum, `rgbd_tum_more`\n"})

@@ -26,7 +26,7 @@ class CheckPublicHeadersTest(unittest.TestCase):
         self.assertTrue(faults[0].startswith(header + ":"), faults[0])
 
     def test_users(self):
-        for user, text in (("Examples/minimal.cc", INCLUDE), ("Examples/tools/a.h", INCLUDE),
+        for user, text in (("Examples/library/01_minimal.cc", INCLUDE), ("Examples/tools/a.h", INCLUDE),
                            ("tools/a.cc", INCLUDE), ("bench/a_bench.cc", INCLUDE),
                            ("python/module.cc", INCLUDE), ("tests/consumer/main.cc", INCLUDE),
                            ("bench/b.cc", "#  include <hullslam/map/map.h>\n"),
