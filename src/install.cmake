@@ -60,8 +60,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR
         DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR} COMPONENT library)
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/support.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
+                                   ${PROJECT_SOURCE_DIR}/scripts/support.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
 foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
                yolo_masks make_masks prepare_network vslamlab)
@@ -77,8 +76,7 @@ foreach(mode mono rgbd stereo)
   hullslam_install_link(hullslam-vslamlab_hullslam_${mode}
                         ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/vslamlab.py)
 endforeach()
-foreach(script plot_run ablation reproduce_tables make_masks
-               prepare_network)
+foreach(script plot_run reproduce_tables make_masks prepare_network)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
 

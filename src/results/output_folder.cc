@@ -248,6 +248,6 @@ void OutputFolder::Commit() {
   staging_.reset();
 }
 
-std::vector<std::string> OutputFolder::KeptNames() { return {"log.txt", "ablation_run.json"}; }
+std::vector<std::string> OutputFolder::KeptNames() { return {"log.txt"}; }
 
 }  // namespace hullslam

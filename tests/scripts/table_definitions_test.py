@@ -50,6 +50,11 @@ class DefinitionsTest(FolderTest):
         self.assertFalse(found.variants["hullslam_objects_off"].objects)
         self.assertTrue(found.variants["hullslam_objects_off"].masks)
 
+    def test_the_example_of_an_ablation(self):
+        found = read_definitions(OWN / "ablation.yaml")
+        self.assertEqual([row.variant for row in found.tables["ablation"].rows], list(found.variants))
+        self.assertEqual(found.tables["ablation"].baseline, "without")
+
     def test_every_figure_of_the_paper_is_in_a_table(self):
         """So no name of a row or a sequence is misspelt."""
         found = read_definitions(OWN / "tables.yaml")
