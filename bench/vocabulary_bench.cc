@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vocabularies: reading files, the words of a frame, and queries of the inverted index. The default
-// vocabulary is used, or the file that $VOCABULARY names; scripts/make_vocabulary.py makes a large
-// one.
+// vocabulary is used, or the file that $VOCABULARY names, such as ORBvoc.txt of ORB-SLAM2.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -6,9 +6,8 @@ finds the objects, and SAM (segment anything) refines the mask within each box.
     scripts/make_masks.py SEQUENCE
     hullslam check-masks SEQUENCE SEQUENCE/masks --output pictures
 
-SEQUENCE is a folder with rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), a folder rgb, or the images
-themselves; a sequence of EuRoC or KITTI, or stereo pairs, of which the left images are used; or a
-video. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
+SEQUENCE is a sequence of any data set (docs/datasets.md), of a stereo camera its left images, or a
+recording, a video or a folder of images. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
 (VIDEO_masks beside a video), and classes.txt with the names of the classes. Images that have a file
 already are left out, so an interrupted call goes on where it stopped. Images that EXIF data turn are
 shown to the networks as a viewer shows them; their masks are those of the stored pixels, which
@@ -16,7 +15,8 @@ HullSLAM reads.
 
 Both networks are those of the Python package ultralytics (pip install ultralytics), which downloads
 their weights when they are used first. Start this script with the Python that has the package; it
-also needs numpy and contourpy, which come with it. --refine none keeps the masks of YOLO.
+also needs HullSLAM's module (docs/python.md), and numpy and contourpy, which come with ultralytics.
+--refine none keeps the masks of YOLO.
 
 Exit codes: 0 done, 1 interrupted or failed, 2 bad usage or input.
 """
@@ -26,12 +26,8 @@ import pathlib
 import sys
 import time
 
-from support import exit_code, InputError, one_line, parser_of
-import run_frames
-from run_frames import VideoFrames, colour_images, orientation_of, turn, turn_back
+from support import exit_code, hullslam_module, InputError, one_line, parser_of, read_json, write
 
-# Where EuRoC, KITTI and folders of stereo pairs have the left images.
-LEFT_FOLDERS = ("mav0/cam0/data", "cam0/data", "image_0", "image_2", "left")
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
 
@@ -39,51 +35,43 @@ MIN_AREA = 100.0  # px^2, of a mask that is written
 # ---- images
 
 
-def list_images(sequence):
-    """The colour images of a sequence, in the order of its list."""
-    for name, column in (("rgb.txt", 1), ("associations.txt", 3)):
-        path = sequence / name
-        if path.is_file():
-            return [image for line in read_lines(path)
-                    for image in [sequence / word_of(path, *line, column)]]
-    left = next((sequence / name for name in LEFT_FOLDERS if (sequence / name).is_dir()), None)
-    images = run_frames.list_images(left) if left else colour_images(sequence)
-    if not images:
-        raise InputError(f"{sequence}: is no sequence, expected a video, a sequence of EuRoC or KITTI, "
-                         "stereo pairs, or a folder with rgb.txt, associations.txt, a folder rgb, or "
-                         "PNG or JPEG images")
-    return images
-
-
-def frames_of_video(path):
-    """(name, function that gives the image) of each frame; the names are those that mono_video has."""
-    video, number = VideoFrames(path), 0
-    while video.skip():
-        yield f"{number:06d}", video.image
-        number += 1
-    if number == 0:
-        raise InputError(f"{path}: no frame of the video can be decoded")
-
-
-def frames_of_folder(images):
-    for path in images:
-        yield path.stem, lambda path=path: path
-
-
-def read_lines(path):
-    """(number, words) of the lines that are no comments."""
+def open_images(path):
+    """The images of whatever is at a path."""
+    hullslam = hullslam_module()
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from error
-    return [(number, line.split()) for number, line in enumerate(lines, 1)
-            if line.strip() and not line.lstrip().startswith("#")]
+        return hullslam.open_stored_images(path)
+    except hullslam.InputError as error:
+        raise InputError(error) from error
 
 
-def word_of(path, number, words, column):
-    if len(words) <= column:
-        raise InputError(f"{path}:{number}: expected {column + 1} columns")
-    return words[column]
+def orientation_of(path):
+    """The orientation in the EXIF data of a JPEG, 1 to 8; 1 is as stored."""
+    if path.suffix.lower() not in (".jpg", ".jpeg"):
+        return 1
+    from PIL import Image
+    try:
+        with Image.open(path) as image:
+            number = image.getexif().get(0x0112, 1)
+    except (OSError, SyntaxError, ValueError):
+        return 1  # who reads the pixels will report it
+    return number if number in range(1, 9) else 1
+
+
+def turn(image, orientation):
+    """A stored image (height, width, ...) as a viewer shows it."""
+    import numpy as np
+    if orientation in (6, 8):
+        return np.rot90(image, -1 if orientation == 6 else 1)
+    if orientation in (5, 7):
+        image = image.swapaxes(0, 1)
+    across = orientation in (2, 3, 7)
+    down = orientation in (3, 4, 7)
+    return image[::-1 if down else 1, ::-1 if across else 1]
+
+
+def turn_back(image, orientation):
+    """The inverse of turn()."""
+    return turn(image, {6: 8, 8: 6}.get(orientation, orientation))
 
 
 # ---- outlines
@@ -156,25 +144,21 @@ def as_array(tensor):
     return tensor.cpu().numpy() if hasattr(tensor, "cpu") else tensor
 
 
-def upright(image):
-    """An image for the networks, and how it was turned: a number of EXIF. `image` is a path or, of a
-    video, the pixels."""
-    orientation = orientation_of(image) if isinstance(image, pathlib.Path) else 1
-    if orientation == 1:
-        return (str(image) if isinstance(image, pathlib.Path) else image), orientation
-    import cv2
+def upright(images, index):
+    """An image for the networks, which is its file if they need not turn it, and how it was turned."""
     import numpy as np
-    stored = cv2.imread(str(image), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
-    if stored is None:
-        raise InputError(f"{image}: cannot be decoded, expected a PNG or JPEG image")
-    return np.ascontiguousarray(turn(stored, orientation)), orientation
+    path = images.files[index]
+    orientation = orientation_of(path)
+    if orientation == 1 and path.is_file():
+        return str(path), orientation
+    return np.ascontiguousarray(turn(images.colour(index), orientation)), orientation
 
 
-def detect(networks, image, arguments):
+def detect(networks, images, index, arguments):
     """[(class, confidence, mask)] of an image; masks have the height and width of its pixels as
     stored."""
     detector, refiner = networks
-    shown, orientation = upright(image)
+    shown, orientation = upright(images, index)
     options = {"verbose": False, **({"device": arguments.device} if arguments.device else {})}
     # retina_masks asks for masks of the size of the image instead of that of the network.
     found = detector(shown, conf=arguments.confidence, retina_masks=True, **options)[0]
@@ -191,7 +175,7 @@ def detect(networks, image, arguments):
     size = tuple(found.orig_img.shape[:2])
     wrong = [tuple(array.shape) for array in arrays if array is not None and array.shape != size]
     if wrong or len(arrays) != len(boxes):
-        raise InputError(f"{image}: the networks gave {len(arrays)} masks of {wrong or size} pixels "
+        raise InputError(f"{images.files[index]}: the networks gave {len(arrays)} masks of {wrong or size} pixels "
                          f"for {len(boxes)} boxes in an image of {size} pixels")
     return [(int(number), float(score), turn_back(array > 0.5, orientation)) for number, score, array in
             zip(as_array(boxes.cls), as_array(boxes.conf), arrays) if array is not None]
@@ -223,23 +207,12 @@ def prepare(out, arguments):
     out.mkdir(parents=True, exist_ok=True)
     path = out / SETTINGS
     if path.exists():
-        try:
-            former = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise InputError(f"{path}: cannot be read: {one_line(error)}") from error
-        if former != describe(arguments):
+        if (former := read_json(path)) != describe(arguments):
             raise InputError(f"{out}: has masks that were made with {json.dumps(former)}; choose "
                              "another --out, or delete them")
     elif any(out.iterdir()):
         raise InputError(f"{out}: contains files, but none of this script; choose another --out")
     write(path, json.dumps(describe(arguments)) + "\n")
-
-
-def write(path, text):
-    """Writes a file by renaming a temporary one, so that an interrupted call leaves no half file."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
 
 
 def show(done, count, begin, at_begin):
@@ -251,32 +224,18 @@ def show(done, count, begin, at_begin):
               end="" if is_terminal and done < count else "\n", file=sys.stderr, flush=True)
 
 
-def find_frames(sequence):
-    """The number of frames, and a function that gives (name, function for the image) of each."""
-    if sequence.suffix in (".bag", ".db3", ".mcap") or (sequence / "metadata.yaml").is_file():
-        raise InputError(f"{sequence}: is a recording of ROS, expected images or a video; "
-                         "`hullslam segment` makes masks of recordings")
-    if sequence.is_file():
-        return sum(1 for _ in frames_of_video(sequence)), lambda: frames_of_video(sequence)
-    images = list_images(sequence)
-    missing = [image for image in images if not image.is_file()]
-    if missing:
-        raise InputError(f"{missing[0]}: is missing, as are {len(missing) - 1} other images of the "
-                         "sequence; download it again")
-    return len(images), lambda: frames_of_folder(images)
-
-
 def default_folder(sequence):
     return sequence.with_name(sequence.stem + "_masks") if sequence.is_file() else sequence / "masks"
 
 
 def make_masks(arguments):
-    count, frames = find_frames(arguments.sequence)
+    images = open_images(arguments.sequence)
+    count = len(images)
     out = arguments.out or default_folder(arguments.sequence)
     prepare(out, arguments)
     networks, new = None, 0
     begin = time.monotonic()
-    for done, (name, read) in enumerate(frames(), 1):
+    for done, name in enumerate(images.names, 1):
         path = out / f"{name}.txt"
         if path.exists():
             continue
@@ -285,7 +244,7 @@ def make_masks(arguments):
             names = networks[0].names
             write(out / "classes.txt", "".join(f"{names[number]}\n" for number in range(len(names))))
             begin = time.monotonic()
-        write(path, yolo_text(detect(networks, read(), arguments)))
+        write(path, yolo_text(detect(networks, images, done - 1, arguments)))
         new += 1
         if not arguments.quiet:
             show(done, count, begin, done - new)

@@ -17,7 +17,7 @@ import os
 import pathlib
 import sys
 
-from support import exit_code, InputError, one_line, parser_of, require
+from support import exit_code, InputError, one_line, parser_of, require, write
 
 STRIDES = (8, 16, 32)  # px of the input per cell of a map that YOLO decodes
 DEFAULT_SIZE = 640  # px, where the file leaves the size of the input open
@@ -214,15 +214,6 @@ def fault_of(model, image):
         return one_line(error)
     wrong = [output for output in outputs if not np.isfinite(output).all()]
     return "its outputs are not finite" if wrong else None
-
-
-def write(path, data):
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def prepare(arguments):

@@ -81,6 +81,18 @@ def programs_folder():
     return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
 
 
+def hullslam_module():
+    """HullSLAM's Python module: an installed one, else that of the build."""
+    sys.path.append(str(programs_folder().parent / "python"))
+    try:
+        import hullslam
+    except ImportError as error:
+        raise InputError(f"{sys.executable} has no package hullslam ({one_line(error)}); build it (cmake "
+                         "--build --preset release --target hullslam_python) or install it (pip install "
+                         "./python)") from error
+    return hullslam
+
+
 # ---- files
 
 
@@ -93,11 +105,14 @@ def hash_file(path):
     return digest.hexdigest()
 
 
-def write(path, text):
-    """Writes a file by renaming a temporary one, so that it is never incomplete."""
+def write(path, content):
+    """Writes a text or bytes by renaming a temporary file, so that a file is never incomplete."""
     temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
+    try:
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def read_text(path):

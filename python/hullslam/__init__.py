@@ -19,8 +19,8 @@ except ImportError as error:
 from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, MaskFiles, Masks,
                     Run, SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
                     TrajectoryErrors, __version__, default_settings, evaluate_trajectory, export,
-                    open_euroc, open_icl, open_images, open_masks, open_run, open_tum, preset_names,
-                    read_map, read_trajectory, report, scene)
+                    open_euroc, open_icl, open_images, open_masks, open_run, open_stored_images, open_tum,
+                    preset_names, read_map, read_trajectory, report, scene)
 from ._open import open  # noqa: A004
 from ._settings import Settings
 
@@ -33,4 +33,5 @@ __all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject",
            "Masks", "Run", "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System",
            "TrackResult", "Trajectory", "TrajectoryErrors", "__version__", "default_settings",
            "evaluate_trajectory", "export", "open", "open_euroc", "open_icl", "open_images", "open_masks",
-           "open_run", "open_tum", "preset_names", "read_map", "read_trajectory", "report", "scene"]
+           "open_run", "open_stored_images", "open_tum", "preset_names", "read_map",
+           "read_trajectory", "report", "scene"]

@@ -213,6 +213,14 @@ class ImageSequence:
     def colour(self, index: int) -> _Image:
         """Decodes the image of a frame in colour: (height, width, 3) uint8, blue first."""
     @property
+    def names(self) -> list[str]:
+        """The name of each image without folder and extension, as SequenceFrame.name: list of str."""
+    @property
+    def files(self) -> list[pathlib.Path]:
+        """The file of each image: list of pathlib.Path. Images of a video or a recording have
+        none, only a name.
+        """
+    @property
     def timestamps(self) -> _Doubles:
         """(N,) float64, s."""
     @property
@@ -590,6 +598,11 @@ def export(source: _Path, format: str, output: _Path, *,
     objects_as: 'ellipsoids' or 'boxes' (gltf, ply). text: text files (colmap).
     masked_classes: left out of training (nerfstudio). force: replace what is there.
     Raises InputError if the run lacks something that the format needs.
+    """
+def open_stored_images(path: _Path) -> ImageSequence:
+    """Opens the images of whatever is at a path, as hullslam segment does: a sequence of any
+    kind, of a stereo camera its left images, a recording, a video or a folder. They come
+    as they are stored, and without a camera: only `names`, `files` and `colour` can be used.
     """
 def open_images(path: _Path, settings: SettingsTable, *, fps: float | None = None) -> ImageSequence:
     """Opens a video or a folder of images without depth. Frames of a video must be read

@@ -109,6 +109,11 @@ std::unique_ptr<FrameList> OpenImages(const std::filesystem::path& path,
       [&] { return MakeList(OpenImageStream(path, {.frames_per_second = fps}).images, settings); });
 }
 
+// The images of whatever is at the path, as they are stored.
+std::unique_ptr<FrameList> OpenStored(const std::filesystem::path& path) {
+  return WithoutGil([&] { return MakeList(hullslam::OpenImages(path), {}); });
+}
+
 // What open() in __init__.py returns, whose arguments it has.
 std::pair<std::unique_ptr<FrameList>, SettingsTable> OpenAny(
     const std::filesystem::path& path, const std::optional<std::filesystem::path>& settings,
@@ -220,6 +225,28 @@ void BindSequences(py::module_& module) {
           py::arg("index"),
           "Decodes the image of a frame in colour: (height, width, 3) uint8, blue first.")
       .def_property_readonly(
+          "names",
+          [](const FrameList& list) {
+            std::vector<std::string> names;
+            for (const MaskFrame& frame : list.names) {
+              names.push_back(frame.stem);
+            }
+            return names;
+          },
+          "The name of each image without folder and extension, as SequenceFrame.name: list of "
+          "str.")
+      .def_property_readonly(
+          "files",
+          [](const FrameList& list) {
+            std::vector<std::filesystem::path> files;
+            for (const FramePaths& frame : list.sequence.frames) {
+              files.push_back(frame.image);
+            }
+            return files;
+          },
+          "The file of each image: list of pathlib.Path. Images of a video or a recording have\n"
+          "none, only a name.")
+      .def_property_readonly(
           "timestamps",
           [](const FrameList& list) {
             py::array_t<double> stamps(static_cast<py::ssize_t>(list.sequence.frames.size()));
@@ -266,6 +293,11 @@ void BindSequences(py::module_& module) {
   module.def("open_euroc", &OpenEuroc, py::arg("folder"), py::arg("settings"),
              "Opens the left camera of a sequence of EuRoC. Its settings are those of\n"
              "Settings(folder / 'mav0/cam0/sensor.yaml').");
+  module.def(
+      "open_stored_images", &OpenStored, py::arg("path"),
+      "Opens the images of whatever is at a path, as hullslam segment does: a sequence of any\n"
+      "kind, of a stereo camera its left images, a recording, a video or a folder. They come\n"
+      "as they are stored, and without a camera: only `names`, `files` and `colour` can be used.");
   module.def("open_images", &OpenImages, py::arg("path"), py::arg("settings"), py::kw_only(),
              py::arg("fps") = py::none(),
              "Opens a video or a folder of images without depth. Frames of a video must be read\n"

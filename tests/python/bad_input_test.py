@@ -288,6 +288,7 @@ def test_evaluation(tmp_path):
 
 def test_sequences(settings, tmp_path):
     refuse("none", hullslam.open_tum, tmp_path / "none", settings)
+    refuse("none", hullslam.open_stored_images, tmp_path / "none")
     refuse("", hullslam.open_images, tmp_path, settings)
     refuse("camera.yaml", hullslam.default_settings, tmp_path)
 
