@@ -138,7 +138,7 @@ def make_questions(scene, truth, matched, count):
 
 
 def ask(program, run, text):
-    done = subprocess.run([program, str(run), text, "--json"], capture_output=True, text=True,
+    done = subprocess.run([program, "query", str(run), text, "--json"], capture_output=True, text=True,
                           check=False)
     if done.returncode == 1:
         return None

@@ -14,10 +14,12 @@ struct FuzzedReader {
   void (*read)(std::string_view bytes);
 };
 
-// The readers of sequences, which FindFuzzedReader() finds too.
-std::span<const FuzzedReader> SequenceReaders();
+// Makes the readers of a file known: a constant of this type in each file NAME_readers.cc.
+struct KnownReaders {
+  explicit KnownReaders(std::span<const FuzzedReader> readers);
+};
 
-// Ends the program if there is no reader of this name.
+// A known reader. Ends the program if there is none of this name.
 const FuzzedReader& FindFuzzedReader(std::string_view name);
 
 }  // namespace hullslam

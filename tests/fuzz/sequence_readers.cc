@@ -129,8 +129,7 @@ constexpr auto kSequenceReaders =
                                  {"rosbag2", FuzzBag},
                                  {"rvl_depth", FuzzRvl}});
 
+const KnownReaders kKnownSequenceReaders(kSequenceReaders);
+
 }  // namespace
-
-std::span<const FuzzedReader> SequenceReaders() { return kSequenceReaders; }
-
 }  // namespace hullslam

@@ -74,7 +74,7 @@ class SceneTruthTest(unittest.TestCase):
         questions = scene_truth.make_questions(SCENE, TRUTH, {10: 0, 11: 1, 12: 2}, 20)
         self.assertEqual(questions, [("the cup on the book", 10), ("the book", 11)])
         program = self.dir / "program"
-        program.write_text("#!/bin/sh\ncase \"$3\" in *on*) echo '{\"answers\": [{\"object\": 10}]}';;"
+        program.write_text("#!/bin/sh\ncase \"$1 $3\" in 'query the cup on'*) echo '{\"answers\": [{\"object\": 10}]}';;"
                            " *) exit 1;; esac\n")
         program.chmod(0o755)
         done = self.run_script("--questions", "20", "--program", program)
