@@ -27,67 +27,53 @@ import numpy as np  # noqa: E402
 import PIL.Image  # noqa: E402
 
 
-class Writer:
-    """Adds frames to the new sequence."""
-
-    def __init__(self, out):
-        self.out, self.lists = out, {"rgb": [], "depth": []}
-        for name in ("rgb", "depth", "masks"):
-            (out / name).mkdir(parents=True)
-
-    def add_image(self, kind, stamp, source):
-        name = f"{kind}/{stamp:.6f}.png"
-        link(source, self.out / name)
-        self.lists[kind].append(f"{stamp:.6f} {name}\n")
-
-    def add_masks(self, stamp, source):
-        """Without a source, or if it does not exist, the frame has no masks."""
-        target = self.out / "masks" / f"{stamp:.6f}.txt"
-        if source is not None and source.exists():
-            link(source, target)
-        else:
-            target.write_text("")
-
-    def add_frames(self, sequence, rows, depth, shift):
-        """`rows` are those of rgb.txt, `depth` those of depth.txt."""
-        for stamp, words in depth:
-            self.add_image("depth", stamp + shift, sequence / words[0])
-        for stamp, words in rows:
-            self.add_image("rgb", stamp + shift, sequence / words[0])
-            self.add_masks(stamp + shift,
-                           sequence / "masks" / (pathlib.PurePath(words[0]).stem + ".txt"))
-
-    def finish(self):
-        for kind, lines in self.lists.items():
-            (self.out / f"{kind}.txt").write_text("# timestamp filename\n" + "".join(lines))
+KINDS = ("rgb", "depth")
 
 
-def size_of_image(path):
+def images_of(sequence):
+    """For each kind (stamp, image, masks) of the images in its list; the masks may not exist."""
+    return {kind: [(stamp, sequence / words[0], sequence / "masks" / f"{pathlib.PurePath(words[0]).stem}.txt")
+                   for stamp, words in read_rows(sequence / f"{kind}.txt")] for kind in KINDS}
+
+
+def blank_images(stamps, like, out):
+    """Blank images of the size of an image."""
     try:
-        with PIL.Image.open(path) as image:
-            return image.size
+        with PIL.Image.open(like) as image:
+            size = image.size
     except PIL.UnidentifiedImageError as error:
-        raise InputError(f"{path}: not a PNG image") from error
+        raise InputError(f"{like}: not a PNG image") from error
+    for kind, mode, colour in ("rgb", "RGB", (128, 128, 128)), ("depth", "I;16", 0):
+        PIL.Image.new(mode, size, colour).save(out / f"blank_{kind}.png")
+    return {kind: [(stamp, out / f"blank_{kind}.png", None) for stamp in stamps] for kind in KINDS}
 
 
-def add_blank_frames(writer, stamps, size):
-    PIL.Image.new("RGB", size, (128, 128, 128)).save(writer.out / "blank_rgb.png")
-    PIL.Image.new("I;16", size, 0).save(writer.out / "blank_depth.png")
-    for stamp in stamps:
-        writer.add_image("rgb", stamp, writer.out / "blank_rgb.png")
-        writer.add_image("depth", stamp, writer.out / "blank_depth.png")
-        writer.add_masks(stamp, None)
-
-
-def add_other_frames(writer, stamps, other):
-    """The first frames of another sequence with the given stamps."""
-    rows, depth = read_rows(other / "rgb.txt"), read_rows(other / "depth.txt")
-    times = np.array([stamp for stamp, _ in depth])
-    for new, (stamp, words) in zip(stamps, rows):
-        writer.add_frames(other, [(stamp, words)], [], new - stamp)
+def images_of_other(stamps, images):
+    """The first images of another sequence, with the given stamps."""
+    times = np.array([stamp for stamp, *_ in images["depth"]])
+    found = {kind: [] for kind in KINDS}
+    for new, (stamp, *files) in zip(stamps, images["rgb"]):
+        found["rgb"].append((new, *files))
         nearest = int(np.argmin(np.abs(times - stamp)))
         if abs(times[nearest] - stamp) < 0.02:
-            writer.add_image("depth", new, other / depth[nearest][1][0])
+            found["depth"].append((new, *images["depth"][nearest][1:]))
+    return found
+
+
+def write_images(out, images):
+    """Writes links to the images (kind -> [(stamp, image, masks)]), their masks and their lists."""
+    for kind, rows in images.items():
+        lines = ["# timestamp filename\n"]
+        for stamp, image, masks in rows:
+            name = f"{kind}/{stamp:.6f}.png"
+            link(image, out / name)
+            lines.append(f"{stamp:.6f} {name}\n")
+            target = out / "masks" / f"{stamp:.6f}.txt"
+            if kind == "rgb" and masks is not None and masks.exists():
+                link(masks, target)
+            elif kind == "rgb":
+                target.write_text("")
+        (out / f"{kind}.txt").write_text("".join(lines))
 
 
 class Part:
@@ -98,6 +84,10 @@ class Part:
 
     def rows(self, rows):
         return [row for row in rows if self.begin <= row[0] < self.end]
+
+    def images(self, images):
+        """(stamp, image, masks) of the part, with the new stamps."""
+        return [(stamp + self.shift, *files) for stamp, *files in self.rows(images)]
 
 
 def split(arguments, stamps, interval):
@@ -127,32 +117,30 @@ def write_groundtruth(sequence, out, parts, between, interval):
 
 def make(arguments):
     sequence, out, count = arguments.sequence, arguments.out, arguments.blank
-    rows, depth = read_rows(sequence / "rgb.txt"), read_rows(sequence / "depth.txt")
-    stamps = np.array([stamp for stamp, _ in rows])
+    images = images_of(sequence)
+    stamps = np.array([stamp for stamp, *_ in images["rgb"]])
     interval = float(np.median(np.diff(stamps)))
     if not interval > 0.0:
         raise InputError(f"{sequence / 'rgb.txt'}: the time stamps do not increase")
     parts = before, after = split(arguments, stamps, interval)
     if out.exists() and any(out.iterdir()):
         raise InputError(f"{out}: is not empty")
-    if arguments.other and len(read_rows(arguments.other / "rgb.txt")) < count:
+    other = arguments.other and images_of(arguments.other)
+    if other and len(other["rgb"]) < count:
         raise InputError(f"{arguments.other}: has fewer than {count} frames")
-    writer = Writer(out)
-    writer.add_frames(sequence, before.rows(rows), before.rows(depth), 0.0)
-    between = before.rows(rows)[-1][0] + interval * np.arange(1, count + 1)
-    if arguments.other:
-        add_other_frames(writer, between, arguments.other)
-    else:
-        add_blank_frames(writer, between, size_of_image(sequence / rows[0][1][0]))
-    writer.add_frames(sequence, after.rows(rows), after.rows(depth), after.shift)
-    writer.finish()
+    for name in (*KINDS, "masks"):
+        (out / name).mkdir(parents=True)
+    first, last = before.images(images["rgb"]), after.images(images["rgb"])
+    between = first[-1][0] + interval * np.arange(1, count + 1)
+    filling = images_of_other(between, other) if other else blank_images(between, images["rgb"][0][1], out)
+    write_images(out, {kind: [*before.images(rows), *filling[kind], *after.images(rows)]
+                       for kind, rows in images.items()})
     for name in ("camera.yaml", "groundtruth_objects.json"):
         if (sequence / name).exists():
             link(sequence / name, out / name)
     if (sequence / "groundtruth.txt").exists():
         write_groundtruth(sequence, out, parts, between, interval)
-    print(f"{out}: {len(before.rows(rows))} frames, {count} of something else, "
-          f"{len(after.rows(rows))} frames")
+    print(f"{out}: {len(first)} frames, {count} of something else, {len(last)} frames")
 
 
 def main(words=None):

@@ -15,7 +15,7 @@ import pathlib
 import subprocess
 import sys
 
-from support import InputError, parser_of, programs_folder, read_json
+from support import exit_code, InputError, parser_of, programs_folder, read_json
 
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
@@ -185,6 +185,19 @@ def measure(run, sequence, arguments, totals):
         totals["right"] += ask_all(arguments.program, run, questions, arguments.list)
 
 
+def measure_all(arguments):
+    totals = {"relations": {relation: [0, 0, 0] for relation in RELATIONS},
+              "mapped": 0, "objects": 0, "asked": 0, "right": 0}
+    print("| run | mapped | " + " | ".join(f"{r}: precision recall" for r in RELATIONS) + " |")
+    print("|---|---|---|---|---|")
+    for run, sequence in zip(arguments.pairs[::2], arguments.pairs[1::2]):
+        measure(run, sequence, arguments, totals)
+    print_counts("all", totals["relations"], totals["mapped"], totals["objects"])
+    if arguments.questions:
+        print(f"all questions: {totals['right']} of {totals['asked']} "
+              f"({figure(totals['right'], totals['asked'])})")
+
+
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
@@ -199,21 +212,7 @@ def main():
     arguments = parser.parse_args()
     if len(arguments.pairs) % 2:
         parser.error("expected pairs RUN_DIR SEQUENCE")
-    totals = {"relations": {relation: [0, 0, 0] for relation in RELATIONS},
-              "mapped": 0, "objects": 0, "asked": 0, "right": 0}
-    print("| run | mapped | " + " | ".join(f"{r}: precision recall" for r in RELATIONS) + " |")
-    print("|---|---|---|---|---|")
-    try:
-        for run, sequence in zip(arguments.pairs[::2], arguments.pairs[1::2]):
-            measure(run, sequence, arguments, totals)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print_counts("all", totals["relations"], totals["mapped"], totals["objects"])
-    if arguments.questions:
-        print(f"all questions: {totals['right']} of {totals['asked']} "
-              f"({figure(totals['right'], totals['asked'])})")
-    return 0
+    return exit_code(measure_all, arguments, failure=2)
 
 
 if __name__ == "__main__":

@@ -62,7 +62,7 @@ file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/support.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
-foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
+foreach(script reproduce_tables degrade_sequence disturbances leave_and_return tum_and_icl
                yolo_masks make_masks prepare_network vslamlab)
   list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/${script}.py)
 endforeach()

@@ -412,3 +412,7 @@ def job(words):
             error.parent.mkdir(parents=True, exist_ok=True)
             error.write_text(f"{code} {problem}\n", encoding="utf-8")
         return code
+
+
+if __name__ == "__main__":
+    sys.exit(job(sys.argv[1:]))

@@ -5,6 +5,7 @@
 import pathlib
 import sys
 import unittest
+from unittest import mock
 
 from small_tree import faults_in
 
@@ -158,6 +159,12 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_fault({**files, "src/loop/b.cc": ""}, f"src/loop: {most + 1} files, at most {most}")
         self.assertEqual(faults_of({**files, "include/hullslam/loop/b.h": ""}), [])
         self.assert_fault({"src/loop/a.cc": "\n" * 901}, "src/loop/a.cc: 901 lines, at most 900")
+        self.assert_fault({"src/loop/a.cc": "", "scripts/a.sh": "\n" * (check_layers.SCRIPTS + 1)},
+                          f"scripts: {check_layers.SCRIPTS + 1} lines")
+        most = check_layers.ALL_FILES
+        many = {f"src/loop{i % 30}/a{i}.h": "" for i in range(most + 1)}
+        with mock.patch.object(check_layers, "LEVELS", {f"loop{i}": 0 for i in range(30)}):
+            self.assert_fault(many, f"src and include: {most + 1} files, at most {most}")
         most = check_layers.PARTS["run"][1]
         self.assert_fault({f"src/run/a{i}.cc": "\n" * 900 for i in range(most // 900 + 1)}, "run: ", "PARTS")
 
