@@ -7,11 +7,11 @@ finds the objects, and SAM (segment anything) refines the mask within each box.
     hullslam check-masks SEQUENCE SEQUENCE/masks --output pictures
 
 SEQUENCE is a sequence of any data set (docs/datasets.md), of a stereo camera its left images, or a
-recording, a video or a folder of images. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
-(VIDEO_masks beside a video), and classes.txt with the names of the classes. Images that have a file
-already are left out, so an interrupted call goes on where it stopped. Images that EXIF data turn are
-shown to the networks as a viewer shows them; their masks are those of the stored pixels, which
-HullSLAM reads.
+recording, a video or a folder of images. For each image a text file in the format yolo-seg is written
+to SEQUENCE/masks (VIDEO_masks beside a video), and classes.txt with the names of the classes. Images
+that have a file already are left out, so an interrupted call goes on where it stopped. Images that EXIF
+data turn are shown to the networks as a viewer shows them; their masks are those of the stored pixels,
+which HullSLAM reads.
 
 Both networks are those of the Python package ultralytics (pip install ultralytics), which downloads
 their weights when they are used first. Start this script with the Python that has the package; it

@@ -82,8 +82,9 @@ def programs_folder():
 
 
 def hullslam_module():
-    """HullSLAM's Python module: an installed one, else that of the build."""
-    sys.path.append(str(programs_folder().parent / "python"))
+    """HullSLAM's Python module: one that this Python has, else that of the build or installation."""
+    built = programs_folder().parent
+    sys.path += [str(built / "python"), str(built.parent / "lib" / "python3" / "dist-packages")]
     try:
         import hullslam
     except ImportError as error:
