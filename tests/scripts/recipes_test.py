@@ -72,11 +72,14 @@ def write_png(path, rows):
                      + chunk(b"IEND", b""))
 
 
-def flags_of(module):
-    """The words of the command that compiles a module, without its input and output."""
+def compiler_of(module, root):
+    """The words of the command that compiles a module, without its input and output. Headers in `root`
+    take the place of others."""
     commands = json.loads((BUILD / "compile_commands.json").read_text())
     command = next(entry["command"] for entry in commands if f"hullslam_{module}.dir" in entry["command"])
     words = shlex.split(command)
+    first = next(i for i, word in enumerate(words) if word.startswith("-I"))
+    words[first:first] = [f"-I{root}/include", f"-I{root}/src"]
     return [word for word in words[:words.index("-o")] if not word.startswith("-O")]
 
 
@@ -93,14 +96,18 @@ class RecipesTest(unittest.TestCase):
                 self.assertLessEqual(len(extension.edits), extension.most)
                 self.assertLessEqual(set(extension.edits), recipe_of(extension.recipe))
 
+    def test_no_other_file_has_a_case_for_each_enumerator(self):
+        case = re.compile(r"\bcase (LensModel|ObjectResidual)::")
+        found = [path for top in ("src", "include", "tools", "python") for path in (TOP / top).rglob("*.[hc]*")
+                 if path.suffix in (".h", ".cc") and case.search(path.read_text())]
+        self.assertEqual(found, [], "a new enumerator would be missing there")
+
     def compile(self, root):
-        """Compiles the new and edited sources. Headers in `root` take the place of others."""
+        """Compiles the new and edited sources."""
         objects = []
         for source in sorted(root.rglob("src/*/*.cc")):
             objects.append(source.with_suffix(".o"))
-            compiler, *flags = flags_of(source.parent.name)
-            self.succeed([compiler, f"-I{root}/include", f"-I{root}/src", *flags, "-O0", "-c", source,
-                          "-o", objects[-1]])
+            self.succeed([*compiler_of(source.parent.name, root), "-O0", "-c", source, "-o", objects[-1]])
         return objects
 
     def link(self, objects):
@@ -128,8 +135,8 @@ class RecipesTest(unittest.TestCase):
         write(folder / "camera.yaml", CAMERA)
         return folder
 
-    @unittest.skipUnless(shutil.which("ninja") and (BUILD / "build.ninja").exists() and (BIN / "hullslam").exists(),
-                         "needs a build with Ninja")
+    @unittest.skipUnless(shutil.which("ninja") and all(path.exists() for path in (
+        BUILD / "build.ninja", BUILD / "compile_commands.json", BIN / "hullslam")), "needs a build with Ninja")
     def test_a_program_with_the_extensions_has_them(self):
         for extension in EXTENSIONS:
             write_tree(self.dir / "tree", extension)
