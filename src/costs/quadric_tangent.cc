@@ -65,10 +65,6 @@ const ResidualKind kTangentResidual = {
     .primitives = kAllPrimitives,
     .takes_lines = true,
     .of_pixel_error = [](double error_px, const ProjectedSize& /*size*/) { return error_px; },
-    .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
-      return input.lines.empty()
-                 ? nullptr
-                 : std::make_unique<TangentCost>(input.camera, input.lines, input.sigma);
-    }};
+    .make_cost = MakeLineCost<TangentCost>};
 
 }  // namespace hullslam

@@ -1,13 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "costs/reprojection.h"
 
-#include "costs/reprojection_evaluation.h"
+#include <Eigen/Core>
+
+#include "costs/pose_manifold.h"
 
 namespace hullslam {
 
-bool ReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
-                                double** jacobians) const {
-  return internal::EvaluateReprojection<2>(camera_, measurement_, parameters, residuals, jacobians);
+template <int kRows>
+bool PointReprojectionCost<kRows>::Evaluate(double const* const* parameters, double* residuals,
+                                            double** jacobians) const {
+  const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
+  const Eigen::Map<const Eigen::Vector3d> translation(parameters[0] + 4);
+  const Eigen::Map<const Eigen::Vector3d> point(parameters[1]);
+  const Eigen::Matrix3d cam_from_world = rotation.toRotationMatrix();
+  const Eigen::Vector3d point_in_cam = cam_from_world * point + translation;
+  if (point_in_cam.z() < kMinDepth) {
+    return false;
+  }
+  Eigen::Map<Eigen::Matrix<double, kRows, 1>> residual(residuals);
+  residual = PointResidual(camera_, measurement_, point_in_cam).template head<kRows>();
+  if (jacobians == nullptr) {
+    return true;
+  }
+  const Eigen::Matrix<double, kRows, 3> by_point_in_cam =
+      PointResidualJacobian(camera_, measurement_, point_in_cam).template topRows<kRows>();
+  if (jacobians[0] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> by_pose(jacobians[0]);
+    by_pose.template leftCols<3>() = -by_point_in_cam * Skew(point_in_cam);
+    by_pose.template middleCols<3>(3) = by_point_in_cam;
+    by_pose.col(6).setZero();
+  }
+  if (jacobians[1] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, kRows, 3, Eigen::RowMajor>> by_point(jacobians[1]);
+    by_point = by_point_in_cam * cam_from_world;
+  }
+  return true;
 }
+
+template class PointReprojectionCost<2>;
+template class PointReprojectionCost<3>;
 
 }  // namespace hullslam

@@ -7,14 +7,17 @@
 
 namespace hullslam {
 
-// Reprojection error of a landmark seen without depth, in standard deviations: the first two rows
-// of PointResidual at cam_from_world * point,
-//   r = (project(cam_from_world * point) - pixel) / (pixel_sigma * scale of the level)
-// Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
-// for a point that is not in front of the camera: then Evaluate returns false.
-class ReprojectionCost final : public ceres::SizedCostFunction<2, 7, 3> {
+// Reprojection error of a landmark, in standard deviations: the first kRows rows of PointResidual
+// at cam_from_world * point,
+//   r = ((u, v, bf / z)(cam_from_world * point) - measured) / (sigma, sigma, disparity_sigma)
+// with sigma = pixel_sigma * scale of the level. There are 2 rows for a landmark seen without
+// depth, and 3 with the disparity. Parameters: cam_from_world (PoseBlock, with PoseManifold), point
+// (m, world frame). Not defined for a point that is not in front of the camera: then Evaluate
+// returns false.
+template <int kRows>
+class PointReprojectionCost final : public ceres::SizedCostFunction<kRows, 7, 3> {
  public:
-  ReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)
+  PointReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)
       : camera_(camera), measurement_(measurement) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -24,5 +27,8 @@ class ReprojectionCost final : public ceres::SizedCostFunction<2, 7, 3> {
   PinholeCamera camera_;
   PointMeasurement measurement_;
 };
+
+using ReprojectionCost = PointReprojectionCost<2>;
+using RgbdReprojectionCost = PointReprojectionCost<3>;
 
 }  // namespace hullslam

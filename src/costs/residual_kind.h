@@ -47,6 +47,13 @@ struct ResidualKind {
   bool needs_projection = false;  // whether it is made from ObjectCostInput::projected
 };
 
+// ResidualKind::make_cost of a cost of the detection's lines.
+template <typename Cost>
+std::unique_ptr<ceres::CostFunction> MakeLineCost(const ObjectCostInput& input) {
+  return input.lines.empty() ? nullptr
+                             : std::make_unique<Cost>(input.camera, input.lines, input.sigma);
+}
+
 inline constexpr std::array kAllPrimitives = {
     ObjectPrimitive::kSupport, ObjectPrimitive::kHull,  ObjectPrimitive::kContour,
     ObjectPrimitive::kBox,     ObjectPrimitive::kConic, ObjectPrimitive::kBoxEllipse};

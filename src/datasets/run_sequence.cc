@@ -11,6 +11,19 @@
 #include "util/shown_text.h"
 
 namespace hullslam {
+namespace {
+
+// Whether the run has read such a data set. Runs before December 2026 name only their program.
+// Those of VSLAM-LAB did not say either which list of images they had.
+bool IsOf(const Dataset& dataset, const SequenceOfRun& run) {
+  if (!run.dataset.empty()) {
+    return run.dataset == dataset.name;
+  }
+  const std::string program = run.program == "map_objects" ? "rgbd_tum" : run.program;
+  return program.ends_with(std::string("_") + dataset.program);
+}
+
+}  // namespace
 
 ImageSequence OpenRunSequence(const SequenceOfRun& run, const std::filesystem::path& path,
                               const PinholeCamera& camera, bool use_depth) {
@@ -19,7 +32,7 @@ ImageSequence OpenRunSequence(const SequenceOfRun& run, const std::filesystem::p
     if (dataset.sensors.empty()) {
       continue;
     }
-    if (run.dataset == dataset.name) {
+    if (IsOf(dataset, run)) {
       ImageSequence sequence = dataset.open_images({.path = path,
                                                     .choices = run.choices,
                                                     .origin = " in summary.json",

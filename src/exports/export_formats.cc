@@ -66,19 +66,13 @@ std::string DescribeScene(const ExportModel& model) {
                      Counted(model.scene.objects.size(), "object"));
 }
 
-std::string WriteGlb(const ExportOptions& options, ExportInput& input) {
+// Writes the file of a scene, whose text or bytes `format` gives.
+template <auto format>
+std::string WriteSceneFile(const ExportOptions& options, ExportInput& input) {
   if (input.sequence) {
     ColourPoints(input);
   }
-  WriteFileAtomically(options.output, FormatGlb(input.model, options.shape));
-  return DescribeScene(input.model);
-}
-
-std::string WritePly(const ExportOptions& options, ExportInput& input) {
-  if (input.sequence) {
-    ColourPoints(input);
-  }
-  WriteFileAtomically(options.output, FormatScenePly(input.model, options.shape));
+  WriteFileAtomically(options.output, format(input.model, options.shape));
   return DescribeScene(input.model);
 }
 
@@ -89,13 +83,9 @@ std::string WriteG2o(const ExportOptions& options, ExportInput& input) {
                      Counted(map.located.positions.size(), "landmark"));
 }
 
-std::string WriteKitti(const ExportOptions& options, ExportInput& input) {
-  WriteFileAtomically(options.output, FormatKittiPoses(input.model.trajectory));
-  return Counted(input.model.trajectory.size(), "pose");
-}
-
-std::string WriteEuroc(const ExportOptions& options, ExportInput& input) {
-  WriteFileAtomically(options.output, FormatEurocPoses(input.model.trajectory));
+template <auto format>
+std::string WritePoseFile(const ExportOptions& options, ExportInput& input) {
+  WriteFileAtomically(options.output, format(input.model.trajectory));
   return Counted(input.model.trajectory.size(), "pose");
 }
 
@@ -106,10 +96,13 @@ constexpr auto kFormats = std::to_array<ExportFormat>({
      ExportNeed::kImages, WriteNerfstudio},
     {"g2o", "a text file with the pose graph and landmarks", ExportNeed::kMap, WriteG2o},
     {"gltf", "a binary glTF file (.glb) with points, path, cameras and objects", ExportNeed::kScene,
-     WriteGlb},
-    {"ply", "a PLY file with points, cameras and objects", ExportNeed::kScene, WritePly},
-    {"kitti", "a text file with a 3 x 4 matrix per pose", ExportNeed::kPoses, WriteKitti},
-    {"euroc", "a CSV file with a pose per line", ExportNeed::kPoses, WriteEuroc},
+     WriteSceneFile<FormatGlb>},
+    {"ply", "a PLY file with points, cameras and objects", ExportNeed::kScene,
+     WriteSceneFile<FormatScenePly>},
+    {"kitti", "a text file with a 3 x 4 matrix per pose", ExportNeed::kPoses,
+     WritePoseFile<FormatKittiPoses>},
+    {"euroc", "a CSV file with a pose per line", ExportNeed::kPoses,
+     WritePoseFile<FormatEurocPoses>},
 });
 
 }  // namespace

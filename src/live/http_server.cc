@@ -46,10 +46,6 @@ struct Shared {
   std::atomic<uint64_t> bytes_sent = 0;
 };
 
-HttpReply TextReply(int status, std::string text) {
-  return {.status = status, .body = std::make_shared<const std::string>(std::move(text))};
-}
-
 HttpRequest ReadRequest(const http::request<http::string_body>& parsed) {
   const auto field = [&](beast::string_view name) {
     const auto found = parsed.find(name);
@@ -151,13 +147,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (error) {
       const bool is_long = error == http::error::header_limit || error == http::error::body_limit ||
                            error == http::error::buffer_overflow;
-      Reply(TextReply(is_long ? 413 : 400, "expected a small HTTP/1.1 request\n"), false);
+      Reply(TextReply(is_long ? 413 : 400, "expected a small HTTP/1.1 request"), false);
       return;
     }
     const HttpRequest request = ReadRequest(parser_->get());
     HttpReply reply = shared_.handle(request);
     if (reply.is_stream && shared_.streams >= shared_.limits.streams) {
-      reply = TextReply(503, fmt::format("{} browsers watch this run already, which is the most\n",
+      reply = TextReply(503, fmt::format("{} browsers watch this run already, which is the most",
                                          shared_.streams));
     }
     Reply(reply, parser_->get().keep_alive() && !reply.is_stream);
@@ -354,6 +350,10 @@ class HttpServer::Engine {
   std::atomic<bool> is_notified_ = false;
   std::thread thread_;
 };
+
+HttpReply TextReply(int status, std::string_view text) {
+  return {.status = status, .body = std::make_shared<const std::string>(std::string(text) + "\n")};
+}
 
 HttpServer::HttpServer(const std::string& address, int port, const HttpLimits& limits,
                        MessageHub& hub, std::function<HttpReply(const HttpRequest&)> handle)

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "live/http_access.h"
 #include "live/message_hub.h"
@@ -21,6 +22,9 @@ struct HttpReply {
   // until the browser or this server ends.
   bool is_stream = false;
 };
+
+// A reply of one line.
+HttpReply TextReply(int status, std::string_view text);
 
 // The limits that keep a browser from slowing or growing the run.
 struct HttpLimits {

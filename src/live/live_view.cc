@@ -49,22 +49,18 @@ std::string UrlOf(const ViewAddress& address, int port, const std::string& token
   return fmt::format("http://{}/?token={}", JoinAddress(host, port), token);
 }
 
-HttpReply Say(int status, std::string_view text) {
-  return {.status = status, .body = std::make_shared<const std::string>(std::string(text) + "\n")};
-}
-
 // Judges a request, and answers those for the page itself and those that no part of it has.
 HttpReply ReplyWithPage(const HttpAccessRules& rules, const HttpRequest& request,
                         const SharedMessage& page) {
   const HttpAccess access = JudgeRequest(rules, request, request.method != "GET");
   if (access != HttpAccess::kAllowed) {
-    return Say(403, Explain(access));
+    return TextReply(403, Explain(access));
   }
   if (request.path != "/") {
-    return Say(404, "There is no such page.");
+    return TextReply(404, "There is no such page.");
   }
   if (request.method != "GET") {
-    return Say(405, "Only GET is possible here.");
+    return TextReply(405, "Only GET is possible here.");
   }
   return {.type = "text/html; charset=utf-8", .body = page};
 }
@@ -245,14 +241,14 @@ class LiveView::Engine {
     }
     if (access == HttpAccess::kAllowed && request.path.starts_with("/control/")) {
       return request.method == "POST" ? Control(request.path.substr(9))
-                                      : Say(405, "Only POST is possible here.");
+                                      : TextReply(405, "Only POST is possible here.");
     }
     return ReplyWithPage(rules_, request, page_);
   }
 
   HttpReply Control(const std::string& command) {
     if (phase_ == LivePhase::kEnded) {
-      return Say(409, "The run has ended.");
+      return TextReply(409, "The run has ended.");
     }
     if (command == "pause") {
       gate_.Pause();
@@ -264,31 +260,31 @@ class LiveView::Engine {
       return BeginSaving();
     } else if (command == "localise" || command == "map") {
       if (!can_localise_) {
-        return Say(409, "This run only localises.");
+        return TextReply(409, "This run only localises.");
       }
       const std::shared_ptr<const Map> map = inbox_.state().map;
       if (map == nullptr || map->keyframes().empty()) {
-        return Say(409, "There is no map yet.");
+        return TextReply(409, "There is no map yet.");
       }
       is_localising_ = command == "localise";
     } else {
-      return Say(404, "There is no such command.");
+      return TextReply(404, "There is no such command.");
     }
     is_control_changed_ = true;
-    return Say(200, "done");
+    return TextReply(200, "done");
   }
 
   HttpReply BeginSaving() {
     std::shared_ptr<const Map> map = inbox_.state().map;
     if (map == nullptr || map->keyframes().empty()) {
-      return Say(409, "There is no map yet.");
+      return TextReply(409, "There is no map yet.");
     }
     if (saver_.IsBusy()) {
-      return Say(409, "The map is being saved already.");
+      return TextReply(409, "The map is being saved already.");
     }
     SetNotice("saving the map");
     saver_.Post(std::move(map));
-    return Say(202, "The map is being saved.");
+    return TextReply(202, "The map is being saved.");
   }
 
   void Save(const Map& map) { SetNotice(commands_.save_map(map)); }

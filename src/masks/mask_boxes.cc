@@ -96,16 +96,12 @@ bool IsBoxes(const MaskProbe& probe) {
   return IsYoloBox(probe) || (probe.columns == kColumns && IsNormalized(probe, kColumns - 1));
 }
 
-std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request) {
-  return std::make_unique<BoxMasks>(request);
-}
-
 }  // namespace
 
 bool IsTrackedBox(const MaskProbe& probe) {
   return probe.columns == kColumns + 1 && IsTrackNumber(probe.row.back()) && IsNormalized(probe, 1);
 }
 
-const MaskFormat kBoxesFormat = {.name = kBoxesName, .is_meant = IsBoxes, .open = OpenBoxes};
+const MaskFormat kBoxesFormat = {.name = kBoxesName, .is_meant = IsBoxes, .open = OpenAs<BoxMasks>};
 
 }  // namespace hullslam

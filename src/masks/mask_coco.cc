@@ -193,12 +193,9 @@ class CocoMasks : public MaskSource {
 
 constexpr std::array<std::string_view, 2> kCocoKeys = {"annotations", "image_id"};
 
-std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
-  return std::make_unique<CocoMasks>(request);
-}
-
 }  // namespace
 
-const MaskFormat kCocoFormat = {.name = kCocoName, .json_keys = kCocoKeys, .open = OpenCoco};
+const MaskFormat kCocoFormat = {
+    .name = kCocoName, .json_keys = kCocoKeys, .open = OpenAs<CocoMasks>};
 
 }  // namespace hullslam

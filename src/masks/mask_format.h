@@ -21,4 +21,10 @@ struct MaskFormat {
   std::unique_ptr<MaskSource> (*open)(const MaskRequest& request) = nullptr;
 };
 
+// MaskFormat::open of a class that is made from the request.
+template <typename Masks>
+std::unique_ptr<MaskSource> OpenAs(const MaskRequest& request) {
+  return std::make_unique<Masks>(request);
+}
+
 }  // namespace hullslam

@@ -123,13 +123,9 @@ bool IsJsonFolder(const MaskProbe& probe) {
          !is_label_png;
 }
 
-std::unique_ptr<MaskSource> OpenJsonFolder(const MaskRequest& request) {
-  return std::make_unique<JsonFolderMasks>(request);
-}
-
 }  // namespace
 
 const MaskFormat kJsonFolderFormat = {
-    .name = kJsonFolderName, .is_meant = IsJsonFolder, .open = OpenJsonFolder};
+    .name = kJsonFolderName, .is_meant = IsJsonFolder, .open = OpenAs<JsonFolderMasks>};
 
 }  // namespace hullslam

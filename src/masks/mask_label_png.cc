@@ -271,13 +271,9 @@ class LabelPngMasks : public MaskSource {
 
 bool IsLabelPng(const MaskProbe& probe) { return probe.has_images && probe.has_classes_json; }
 
-std::unique_ptr<MaskSource> OpenLabelPng(const MaskRequest& request) {
-  return std::make_unique<LabelPngMasks>(request);
-}
-
 }  // namespace
 
 const MaskFormat kLabelPngFormat = {
-    .name = kLabelPngName, .is_meant = IsLabelPng, .open = OpenLabelPng};
+    .name = kLabelPngName, .is_meant = IsLabelPng, .open = OpenAs<LabelPngMasks>};
 
 }  // namespace hullslam

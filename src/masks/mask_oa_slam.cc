@@ -227,13 +227,9 @@ class OaSlamMasks : public MaskSource {
 
 constexpr std::array<std::string_view, 1> kOaSlamKeys = {"detections"};
 
-std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
-  return std::make_unique<OaSlamMasks>(request);
-}
-
 }  // namespace
 
 const MaskFormat kOaSlamFormat = {
-    .name = kOaSlamName, .json_keys = kOaSlamKeys, .open = OpenOaSlam};
+    .name = kOaSlamName, .json_keys = kOaSlamKeys, .open = OpenAs<OaSlamMasks>};
 
 }  // namespace hullslam

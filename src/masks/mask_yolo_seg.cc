@@ -65,13 +65,9 @@ bool IsYoloSeg(const MaskProbe& probe) {
   return probe.columns >= 7 && !IsTrackedBox(probe) && IsNormalized(probe, 1);
 }
 
-std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request) {
-  return std::make_unique<YoloSegMasks>(request);
-}
-
 }  // namespace
 
 const MaskFormat kYoloSegFormat = {
-    .name = kYoloSegName, .is_meant = IsYoloSeg, .open = OpenYoloSeg};
+    .name = kYoloSegName, .is_meant = IsYoloSeg, .open = OpenAs<YoloSegMasks>};
 
 }  // namespace hullslam

@@ -12,7 +12,6 @@
 #include "costs/defined_cost.h"
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
-#include "costs/reprojection_rgbd.h"
 #include "estimators/keypoint_precision.h"
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"

@@ -6,67 +6,47 @@
 namespace hullslam {
 namespace {
 
-LossReason ReasonOf(TrackingFailure failure) {
-  switch (failure) {
-    case TrackingFailure::kTooFewFeatures:
-      return LossReason::kTooFewFeatures;
-    case TrackingFailure::kImagesMissing:
-      return LossReason::kImagesMissing;
-    case TrackingFailure::kTooFewLandmarks:
-      return LossReason::kTooFewLandmarks;
-    default:
-      return LossReason::kNotRecognised;
-  }
-}
-
-LossReason ReasonOf(const FrameNote& note) {
+TrackingFailure ReasonOf(const FrameNote& note) {
   switch (note.state) {
     case TrackingState::kNotInitialized:
-      return LossReason::kNoMapYet;
+      return TrackingFailure::kNoMapYet;
     case TrackingState::kTracked:
-      return LossReason::kNotJoined;
+      return TrackingFailure::kNotJoined;
     default:
-      return ReasonOf(note.loss.value_or(TrackingFailure::kNotRecognised));
+      return note.loss.value_or(TrackingFailure::kNotRecognised);
   }
 }
 
 }  // namespace
 
-std::string_view ToString(LossReason reason) {
+std::string_view AdviceFor(TrackingFailure reason) {
   switch (reason) {
-    case LossReason::kNoMapYet:
-      return "no map yet";
-    case LossReason::kTooFewFeatures:
-      return ToString(TrackingFailure::kTooFewFeatures);
-    case LossReason::kImagesMissing:
-      return ToString(TrackingFailure::kImagesMissing);
-    case LossReason::kTooFewLandmarks:
-      return ToString(TrackingFailure::kTooFewLandmarks);
-    case LossReason::kNotRecognised:
-      return ToString(TrackingFailure::kNotRecognised);
-    default:
-      return "not joined to the map";
-  }
-}
-
-std::string_view AdviceFor(LossReason reason) {
-  switch (reason) {
-    case LossReason::kNoMapYet:
+    case TrackingFailure::kNoMapYet:
       return "begin with a sideways motion in front of a textured scene; in a car, which can only "
              "go forward, --set ORBextractor.nFeatures=2000";
-    case LossReason::kTooFewFeatures:
+    case TrackingFailure::kTooFewFeatures:
       return "the images are dark, blurred, covered or plain: more light, a shorter exposure, or "
              "--set ORBextractor.minThFAST=3";
-    case LossReason::kImagesMissing:
+    case TrackingFailure::kImagesMissing:
       return "record without gaps; the camera must see a known place again after a gap";
-    case LossReason::kTooFewLandmarks:
+    case TrackingFailure::kTooFewLandmarks:
       return "more features: --set ORBextractor.nFeatures=2000";
-    case LossReason::kNotRecognised:
+    case TrackingFailure::kNotRecognised:
       return "move more slowly, record more images per second, or --set "
              "ORBextractor.nFeatures=2000";
     default:
       return "let the camera see an earlier place again, or write these parts with --keep-islands";
   }
+}
+
+void FrameStretch::Add(size_t number, double timestamp) {
+  if (frames == 0) {
+    first_frame = number;
+    first_timestamp = timestamp;
+  }
+  last_frame = number;
+  last_timestamp = timestamp;
+  ++frames;
 }
 
 std::vector<LostStretch> FindLostStretches(std::span<const TrackedFrame> frames,
@@ -81,15 +61,10 @@ std::vector<LostStretch> FindLostStretches(std::span<const TrackedFrame> frames,
     }
     const FrameNote& note = notes[i];
     if (open != note.state) {
-      stretches.push_back({.first_frame = note.number,
-                           .first_timestamp = frames[i].timestamp,
-                           .reason = ReasonOf(note)});
+      stretches.emplace_back().reason = ReasonOf(note);
       open = note.state;
     }
-    LostStretch& stretch = stretches.back();
-    stretch.last_frame = note.number;
-    stretch.last_timestamp = frames[i].timestamp;
-    ++stretch.frames;
+    stretches.back().Add(note.number, frames[i].timestamp);
   }
   return stretches;
 }

@@ -11,20 +11,8 @@
 
 namespace hullslam {
 
-// Why frames have no pose at the end of a run.
-enum class LossReason {
-  kNoMapYet,        // they come before the first map, and are not found in it
-  kTooFewFeatures,  // these four are those of TrackingFailure
-  kImagesMissing,
-  kTooFewLandmarks,
-  kNotRecognised,
-  kNotJoined,  // they are in an island that was not joined to the map
-};
-
-// For messages and files: "too few features" and so on.
-std::string_view ToString(LossReason reason);
 // Advice for the user, in one sentence without a full stop.
-std::string_view AdviceFor(LossReason reason);
+std::string_view AdviceFor(TrackingFailure reason);
 
 // The result of tracking for a frame, as it was during the run.
 struct FrameNote {
@@ -34,19 +22,26 @@ struct FrameNote {
   bool is_unsure = false;  // TrackedFrame::is_unsure
 };
 
-// Frames in a row that have no pose. `reason` is that of the first one: the others are lost because
-// it was lost.
-struct LostStretch {
+// Frames in a row.
+struct FrameStretch {
   size_t first_frame = 0;  // as FrameNote::number
   size_t last_frame = 0;
   double first_timestamp = 0.0;  // s
   double last_timestamp = 0.0;
   size_t frames = 0;
-  LossReason reason = LossReason::kNotRecognised;
+
+  // Adds the next frame.
+  void Add(size_t number, double timestamp);
 };
 
-// The stretches of a run in order of time. `frames` are those at its end, and `notes` has one entry
-// for each of them. Frames of islands that were not joined are in stretches of their own.
+// Frames in a row that have no pose. `reason` belongs to the first one: the others are lost because
+// it was lost.
+struct LostStretch : FrameStretch {
+  TrackingFailure reason = TrackingFailure::kNotRecognised;
+};
+
+// The stretches of a run in order of time. `frames` are the frames at its end, and `notes` has one
+// entry for each of them. Frames of islands that were not joined are in stretches of their own.
 std::vector<LostStretch> FindLostStretches(std::span<const TrackedFrame> frames,
                                            std::span<const FrameNote> notes);
 

@@ -5,21 +5,18 @@
 
 namespace hullslam {
 
-std::vector<UnsureStretch> FindUnsureStretches(std::span<const TrackedFrame> frames,
-                                               std::span<const FrameNote> notes) {
+std::vector<FrameStretch> FindUnsureStretches(std::span<const TrackedFrame> frames,
+                                              std::span<const FrameNote> notes) {
   Check(frames.size() == notes.size(), "each frame needs a note");
-  std::vector<UnsureStretch> stretches;
+  std::vector<FrameStretch> stretches;
   bool is_open = false;  // whether the frame before belongs to the last stretch
   for (size_t i = 0; i < frames.size(); ++i) {
     const bool is_unsure = frames[i].state == TrackingState::kTracked && notes[i].is_unsure;
     if (is_unsure && !is_open) {
-      stretches.push_back({.first_frame = notes[i].number, .first_timestamp = frames[i].timestamp});
+      stretches.emplace_back();
     }
     if (is_unsure) {
-      UnsureStretch& stretch = stretches.back();
-      stretch.last_frame = notes[i].number;
-      stretch.last_timestamp = frames[i].timestamp;
-      ++stretch.frames;
+      stretches.back().Add(notes[i].number, frames[i].timestamp);
     }
     is_open = is_unsure;
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -9,18 +8,10 @@
 
 namespace hullslam {
 
-// Frames in a row whose poses are unsure (TrackedFrame::is_unsure).
-struct UnsureStretch {
-  size_t first_frame = 0;  // as FrameNote::number
-  size_t last_frame = 0;
-  double first_timestamp = 0.0;  // s
-  double last_timestamp = 0.0;
-  size_t frames = 0;
-};
-
-// The stretches of a run in order of time. `frames` are those at its end, and `notes` has one entry
-// for each of them. A frame without a pose at the end is not unsure but lost.
-std::vector<UnsureStretch> FindUnsureStretches(std::span<const TrackedFrame> frames,
-                                               std::span<const FrameNote> notes);
+// The stretches of frames whose poses are unsure (TrackedFrame::is_unsure), in order of time.
+// `frames` are the frames at the end of the run, and `notes` has one entry for each of them. A
+// frame without a pose at the end is not unsure but lost.
+std::vector<FrameStretch> FindUnsureStretches(std::span<const TrackedFrame> frames,
+                                              std::span<const FrameNote> notes);
 
 }  // namespace hullslam

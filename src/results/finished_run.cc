@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -41,30 +39,10 @@ std::string TextOf(const JsonNode& node, const char* key) {
   return node.Has(key) ? node.At(key).Text() : std::string();
 }
 
-// The data set of a run that does not name it, as runs before December 2026 did not. Empty for
-// the programs of VSLAM-LAB: those runs did not say either which list of images they had.
-std::string DatasetOfProgram(std::string_view program) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kDatasets = {
-      {{"_tum", "tum"},
-       {"map_objects", "tum"},
-       {"_icl", "icl"},
-       {"_euroc", "euroc"},
-       {"_bag", "bag"},
-       {"_video", "video"}}};
-  for (const auto& [suffix, dataset] : kDatasets) {
-    if (program.ends_with(suffix)) {
-      return std::string(dataset);
-    }
-  }
-  return {};
-}
-
 SequenceOfRun ReadSequence(const JsonNode& provenance, const std::string& program) {
   SequenceOfRun sequence{.path = TextOf(provenance, "sequence"),
-                         .dataset = TextOf(provenance, "dataset")};
-  if (sequence.dataset.empty()) {
-    sequence.dataset = DatasetOfProgram(program);
-  }
+                         .dataset = TextOf(provenance, "dataset"),
+                         .program = program};
   if (provenance.Has("sequence_choices")) {
     for (const auto& [name, choice] : provenance.At("sequence_choices").Members()) {
       sequence.choices[name] = choice.Text();

@@ -19,8 +19,9 @@ namespace hullslam {
 
 // The sequence that a run has read. OpenRunSequence() (datasets/run_sequence.h) opens it again.
 struct SequenceOfRun {
-  std::string path;     // as the user gave it; empty if the run does not say it
-  std::string dataset;  // ImageSequence::dataset, such as "tum"; empty if it is not known
+  std::string path;          // as the user gave it; empty if the run does not say it
+  std::string dataset;       // ImageSequence::dataset, such as "tum"; empty if it is not known
+  std::string program = {};  // that has read it, such as "rgbd_tum"; empty if it is not known
   std::map<std::string, std::string> choices = {};  // ImageSequence::choices
 };
 

@@ -12,16 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ToJson(const LostStretch& stretch) {
-  return {{"first_frame", stretch.first_frame},
-          {"last_frame", stretch.last_frame},
-          {"first_timestamp", stretch.first_timestamp},
-          {"last_timestamp", stretch.last_timestamp},
-          {"frames", stretch.frames},
-          {"reason", ToString(stretch.reason)}};
-}
-
-Json ToJson(const UnsureStretch& stretch) {
+Json ToJson(const FrameStretch& stretch) {
   return {{"first_frame", stretch.first_frame},
           {"last_frame", stretch.last_frame},
           {"first_timestamp", stretch.first_timestamp},
@@ -33,9 +24,10 @@ Json ToJson(const TrajectorySummary& summary) {
   Json losses = Json::array();
   for (const LostStretch& stretch : summary.losses) {
     losses.push_back(ToJson(stretch));
+    losses.back()["reason"] = ToString(stretch.reason);
   }
   Json unsure = Json::array();
-  for (const UnsureStretch& stretch : summary.unsure) {
+  for (const FrameStretch& stretch : summary.unsure) {
     unsure.push_back(ToJson(stretch));
   }
   return {{"ate_rmse_m", OrNull(summary.ate_rmse_m)},

@@ -31,10 +31,10 @@ struct TrajectorySummary {
   std::optional<double> coverage = std::nullopt;
   std::optional<double> rpe_rmse_m = std::nullopt;  // over one second
   std::optional<double> rpe_rmse_deg = std::nullopt;
-  size_t skipped = 0;                      // frames with a broken image
-  size_t unpaired = 0;                     // colour images without depth
-  std::vector<LostStretch> losses = {};    // where frames have no pose, in order of time
-  std::vector<UnsureStretch> unsure = {};  // where poses may be wrong, in order of time
+  size_t skipped = 0;                     // frames with a broken image
+  size_t unpaired = 0;                    // colour images without depth
+  std::vector<LostStretch> losses = {};   // where frames have no pose, in order of time
+  std::vector<FrameStretch> unsure = {};  // where poses may be wrong, in order of time
 };
 
 // Mapped objects: means over the observations of each object, and then over the objects.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "util/fnv1a.h"
+
 namespace hullslam {
 namespace {
 
@@ -54,11 +56,7 @@ TriangleMesh UnitCube() {
 }
 
 Colour ColourOfClass(std::string_view label) {
-  uint32_t hash = 2166136261U;
-  for (const char letter : label) {
-    hash = (hash ^ static_cast<uint8_t>(letter)) * 16777619U;
-  }
-  const double hue = 6.0 * ((hash >> 16) % 360) / 360.0;
+  const double hue = 6.0 * ((Fnv1a<uint32_t>(label) >> 16) % 360) / 360.0;
   Colour colour{};
   for (size_t channel = 0; channel < 3; ++channel) {
     // As a function of the hue, which goes from 0 to 6, each channel is a trapezoid of width 4

@@ -69,7 +69,7 @@ void PrintLosses(std::span<const LostStretch> losses) {
   });
   shown.resize(std::min(shown.size(), kMostShown));
   std::sort(shown.begin(), shown.end());
-  std::set<LossReason> reasons;
+  std::set<TrackingFailure> reasons;
   for (const LostStretch* stretch : shown) {
     Print("lost: frames {} to {} ({}; {:.3f} to {:.3f} s): {}\n", stretch->first_frame,
           stretch->last_frame, stretch->frames, stretch->first_timestamp, stretch->last_timestamp,
@@ -80,7 +80,7 @@ void PrintLosses(std::span<const LostStretch> losses) {
     Print("and {} shorter stretches (trajectory.losses in summary.json)\n",
           losses.size() - shown.size());
   }
-  for (const LossReason reason : reasons) {
+  for (const TrackingFailure reason : reasons) {
     Print("  {}: {}\n", ToString(reason), AdviceFor(reason));
   }
   if (!shown.empty()) {
@@ -89,17 +89,17 @@ void PrintLosses(std::span<const LostStretch> losses) {
 }
 
 // Where poses may be wrong although the camera was tracked. Only the longest stretch is named.
-void PrintUnsure(std::span<const UnsureStretch> unsure) {
+void PrintUnsure(std::span<const FrameStretch> unsure) {
   if (unsure.empty()) {
     return;
   }
   size_t frames = 0;
-  for (const UnsureStretch& stretch : unsure) {
+  for (const FrameStretch& stretch : unsure) {
     frames += stretch.frames;
   }
   const auto longest = std::max_element(
       unsure.begin(), unsure.end(),
-      [](const UnsureStretch& a, const UnsureStretch& b) { return a.frames < b.frames; });
+      [](const FrameStretch& a, const FrameStretch& b) { return a.frames < b.frames; });
   Print(
       "warning: the poses of {} frames are unsure, most of them in a row from {:.3f} to {:.3f} s "
       "(frames {} to {}): they rest on landmarks that only two keyframes see, so the map may have "

@@ -26,6 +26,7 @@
 #include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
 #include "util/ascii.h"
+#include "util/fnv1a.h"
 #include "util/lower_case.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
@@ -379,11 +380,7 @@ std::string FormatSettings(SystemOptions options) {
 }
 
 std::string HashSettings(const SystemOptions& options) {
-  uint64_t hash = 0xcbf29ce484222325;
-  for (const unsigned char byte : FormatSettings(options)) {
-    hash = (hash ^ byte) * 0x100000001b3;
-  }
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", Fnv1a<uint64_t>(FormatSettings(options)));
 }
 
 }  // namespace hullslam

@@ -37,6 +37,20 @@ TEST(RunSequence, IsOpenedAsTheRunReadIt) {
       {"tum"});
 }
 
+TEST(RunSequence, ARunWithoutADataSetHasTheOneOfItsProgram) {
+  const TemporaryFolder folder;
+  folder.Write("rgb.txt", "1.5 a.png\n");
+  cv::imwrite(folder.path() / "a.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+  const auto open = [&](const char* program) {
+    return OpenRunSequence({.path = {}, .dataset = {}, .program = program}, folder.path(),
+                           MadeCamera());
+  };
+  EXPECT_EQ(open("rgbd_tum").dataset, "tum");
+  EXPECT_EQ(open("map_objects").dataset, "tum");
+  EXPECT_EQ(open("mono_video").dataset, "video");
+  ExpectInputError([&] { open("vslamlab_hullslam_mono"); }, {"does not say of which data set"});
+}
+
 TEST(RunSequence, PairsAreOpenedWithTheRateOfTheRun) {
   const TemporaryFolder folder;
   for (const char* const name : {"left/0.png", "right/0.png", "left/1.png", "right/1.png"}) {

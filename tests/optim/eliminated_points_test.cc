@@ -17,7 +17,6 @@
 
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
-#include "costs/reprojection_rgbd.h"
 #include "optim/made_points.h"
 #include "util/chi_square.h"
 

@@ -20,7 +20,7 @@ class UnsureFrames : public testing::Test {
     notes_.push_back(
         {.number = 2 * notes_.size(), .state = TrackingState::kTracked, .is_unsure = is_unsure});
   }
-  std::vector<UnsureStretch> Find() const { return FindUnsureStretches(frames_, notes_); }
+  std::vector<FrameStretch> Find() const { return FindUnsureStretches(frames_, notes_); }
 
   std::vector<TrackedFrame> frames_;
   std::vector<FrameNote> notes_;
@@ -36,7 +36,7 @@ TEST_F(UnsureFrames, AreNamedByNumberAndTime) {
   for (const bool is_unsure : {false, true, true, false, true}) {
     Add(is_unsure);
   }
-  const std::vector<UnsureStretch> found = Find();
+  const std::vector<FrameStretch> found = Find();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].first_frame, 2u);
   EXPECT_EQ(found[0].last_frame, 4u);
@@ -52,7 +52,7 @@ TEST_F(UnsureFrames, FramesThatHaveNoPoseAtTheEndAreLost) {
   Add(true);
   Add(true, TrackingState::kLost);
   Add(true);
-  const std::vector<UnsureStretch> found = Find();
+  const std::vector<FrameStretch> found = Find();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].last_frame, 0u);
   EXPECT_EQ(found[1].first_frame, 4u);

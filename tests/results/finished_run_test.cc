@@ -79,19 +79,6 @@ TEST_F(FinishedRunTest, WhatARunDidNotHaveIsEmpty) {
   EXPECT_FALSE(run.ReadConvertedGroundtruth());
 }
 
-TEST_F(FinishedRunTest, ARunWithoutADataSetIsThatOfItsProgram) {
-  const std::map<std::string, std::string> datasets = {
-      {"rgbd_tum", "tum"},     {"map_objects", "tum"}, {"mono_icl", "icl"}, {"mono_euroc", "euroc"},
-      {"mono_video", "video"}, {"rgbd_bag", "bag"},    {"other", ""}};
-  for (const auto& [program, dataset] : datasets) {
-    summary_.provenance.program = program;
-    summary_.provenance.dataset = std::nullopt;
-    EXPECT_EQ(Open().sequence.dataset, dataset) << program;
-  }
-  summary_.provenance.dataset = "kitti";
-  EXPECT_EQ(Open().sequence.dataset, "kitti");
-}
-
 TEST_F(FinishedRunTest, ReadsTheFilesOfTheRun) {
   const Trajectory poses = {{1.0, Rigid3()}, {2.0, Rigid3()}};
   folder_.Write("a/run/trajectory.txt", FormatTrajectory(poses));

@@ -54,12 +54,12 @@ TEST(Summary, ListsTheIslandsOfTheMap) {
 
 TEST(Summary, SaysWhereAndWhyFramesWereLost) {
   RunSummary summary;
-  summary.trajectory.losses = {{.first_frame = 4,
-                                .last_frame = 8,
-                                .first_timestamp = 0.5,
-                                .last_timestamp = 0.75,
-                                .frames = 5,
-                                .reason = LossReason::kTooFewFeatures}};
+  summary.trajectory.losses = {{{.first_frame = 4,
+                                 .last_frame = 8,
+                                 .first_timestamp = 0.5,
+                                 .last_timestamp = 0.75,
+                                 .frames = 5},
+                                TrackingFailure::kTooFewFeatures}};
   const Json losses = Json::parse(FormatSummary(summary))["trajectory"]["losses"];
   ASSERT_EQ(losses.size(), 1u);
   EXPECT_EQ(Keys(losses[0]),

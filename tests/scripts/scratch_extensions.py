@@ -112,7 +112,7 @@ std::string WriteScratch(const ExportOptions& options, ExportInput& input) {
 """}, {
     "src/exports/export_formats.cc": [
         ('#include "exports/export_images.h"\n', '#include "exports/export_scratch.h"\n', ""),
-        ('ExportNeed::kPoses, WriteEuroc},\n',
+        ('     WritePoseFile<FormatEurocPoses>},\n',
          '    {"scratch", "the number of poses", ExportNeed::kPoses, WriteScratch},\n', "")],
     "tests/integration/export_test.cc": [
         ("", 'TEST_F(Export, Scratch) { ExportTo("scratch", Out("n")); }\n\n', "TEST_F(Export, GraphAndPly")],

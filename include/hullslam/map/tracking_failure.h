@@ -6,29 +6,37 @@
 
 namespace hullslam {
 
-// Why a frame has no pose although there is a map.
+// Why a frame has no pose. The first and the last reason are known at the end of a run; tracking
+// gives the others.
 enum class TrackingFailure {
+  kNoMapYet,         // it comes before the first map, and is not found in it
   kTooFewFeatures,   // the image is dark, blurred, covered or without texture
   kImagesMissing,    // it comes much later than the frame before
   kTooFewLandmarks,  // the place was recognised, but tracking.min_inliers landmarks were not found
   kNotRecognised,    // the image shows nothing of the map, or the camera has moved too far
+  kNotJoined,        // it is in an island that was not joined to the map
 };
 
 inline constexpr std::array kTrackingFailures = {
-    TrackingFailure::kTooFewFeatures, TrackingFailure::kImagesMissing,
-    TrackingFailure::kTooFewLandmarks, TrackingFailure::kNotRecognised};
+    TrackingFailure::kNoMapYet,      TrackingFailure::kTooFewFeatures,
+    TrackingFailure::kImagesMissing, TrackingFailure::kTooFewLandmarks,
+    TrackingFailure::kNotRecognised, TrackingFailure::kNotJoined};
 
 // For messages: "too few features" and so on.
 constexpr std::string_view ToString(TrackingFailure failure) {
   switch (failure) {
+    case TrackingFailure::kNoMapYet:
+      return "no map yet";
     case TrackingFailure::kTooFewFeatures:
       return "too few features";
     case TrackingFailure::kImagesMissing:
       return "images are missing";
     case TrackingFailure::kTooFewLandmarks:
       return "too few landmarks";
-    default:
+    case TrackingFailure::kNotRecognised:
       return "nothing recognised";
+    default:
+      return "not joined to the map";
   }
 }
 

@@ -79,10 +79,6 @@ const ResidualKind kAlgebraicPlaneResidual = {
           const double metres_per_px = size.depth / size.focal_px;
           return 2.0 * size.radius_px * error_px * metres_per_px * metres_per_px;
         },
-    .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
-      return input.lines.empty()
-                 ? nullptr
-                 : std::make_unique<AlgebraicPlaneCost>(input.camera, input.lines, input.sigma);
-    }};
+    .make_cost = MakeLineCost<AlgebraicPlaneCost>};
 
 }  // namespace hullslam

@@ -27,18 +27,14 @@ bool RelativePlaneCost::Evaluate(double const* const* parameters, double* residu
   return true;
 }
 
-const ResidualKind kRelativePlaneResidual = {
-    .name = "relative_plane",
-    .primitives = kAllPrimitives,
-    .takes_lines = true,
-    .of_pixel_error =
-        [](double error_px, const ProjectedSize& size) {
-          return 2.0 * size.radius_px * error_px / (size.focal_px * size.focal_px);
-        },
-    .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
-      return input.lines.empty()
-                 ? nullptr
-                 : std::make_unique<RelativePlaneCost>(input.camera, input.lines, input.sigma);
-    }};
+const ResidualKind kRelativePlaneResidual = {.name = "relative_plane",
+                                             .primitives = kAllPrimitives,
+                                             .takes_lines = true,
+                                             .of_pixel_error =
+                                                 [](double error_px, const ProjectedSize& size) {
+                                                   return 2.0 * size.radius_px * error_px /
+                                                          (size.focal_px * size.focal_px);
+                                                 },
+                                             .make_cost = MakeLineCost<RelativePlaneCost>};
 
 }  // namespace hullslam
