@@ -39,7 +39,7 @@ RpeResult EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
 
 // Says that the file of the reference has qw before qx qy qz: the rotations then agree with the
 // estimate at least five times as well as in the order of TUM (qx qy qz qw). Empty if they do not,
-// or if they agree within one degree as they are. `report` is that of the same trajectories.
+// or if they agree within one degree as they are. `report` is about the same trajectories.
 std::string DescribeSwappedRotations(const Trajectory& reference, const Trajectory& estimate,
                                      const RpeResult& report, const RpeOptions& options = {});
 

@@ -15,7 +15,7 @@ namespace hullslam {
 class FeatureGrid {
  public:
   FeatureGrid() = default;
-  // Sorts by `undistorted`. The box is that of the undistorted image, in px. Keypoints outside it
+  // Sorts by `undistorted`. The box is the undistorted image, in px. Keypoints outside it
   // are put into the nearest cell. Throws CheckError if the box is empty, or if there are more than
   // 65535 keypoints.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
@@ -30,7 +30,7 @@ class FeatureGrid {
   FeatureGrid Select(std::span<const uint32_t> kept) const;
 
   // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
-  // from min_level to max_level. `keypoints` are those of the constructor. Cells are visited one
+  // from min_level to max_level. `keypoints` are as in the constructor. Cells are visited one
   // after the other; within a cell the indices are in increasing order.
   void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
                 int min_level, int max_level, std::vector<uint32_t>& found) const;
@@ -53,7 +53,7 @@ class FeatureGrid {
   Eigen::Vector2f cells_per_pixel_ = Eigen::Vector2f::Zero();
   std::vector<uint16_t> cell_start_;        // kColumns kRows + 1, into order_; column-major
   std::vector<uint16_t> order_;             // keypoint indices, cell by cell
-  std::vector<Eigen::Vector2f> positions_;  // empty: those of the keypoints
+  std::vector<Eigen::Vector2f> positions_;  // empty: as in the keypoints
 };
 
 }  // namespace hullslam

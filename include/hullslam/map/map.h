@@ -89,7 +89,7 @@ class Map {
   // Also removes the vote. An object that has no observation left stays, as a candidate.
   void RemoveObservation(ObjectId object, KeyframeId keyframe);
   void EraseObject(ObjectId object);
-  // Like ReplaceLandmark. The shape is that of `by`.
+  // Like ReplaceLandmark. The shape of `by` is kept.
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
 

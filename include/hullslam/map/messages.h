@@ -67,7 +67,7 @@ struct MapCorrection {
   struct Pose {
     KeyframeId keyframe;
     Rigid3 snapshot_cam_from_world;
-    // Maps the corrected world to the camera frame, whose unit of length is that of the snapshot.
+    // Maps the corrected world to the camera frame, which keeps the snapshot's unit of length.
     // So its scale is a length in the snapshot over the same length in the corrected map.
     Sim3 corrected_cam_from_world;
   };
@@ -90,7 +90,7 @@ struct MapCorrection {
   };
 
   // Map::correction_count() of the snapshot. A correction is refused if the map was corrected after
-  // the snapshot, because the world frame of the snapshot is then no longer that of the map.
+  // the snapshot, because the map then no longer has the world frame of the snapshot.
   uint32_t snapshot_corrections = 0;
   std::vector<Pose> poses;          // by increasing keyframe id, each keyframe once
   std::vector<Position> positions;  // only where a global bundle adjustment has moved landmarks

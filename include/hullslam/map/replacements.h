@@ -26,7 +26,7 @@ class Replacements {
     return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;
   }
 
-  // Forgets replacements with an older revision, but not those of ids before `kept`. These then
+  // Forgets replacements with an older revision, but keeps all of ids before `kept`. These then
   // lead to the id that is in use now, so they do not need the forgotten ones.
   void Forget(uint32_t revision, IdType kept = IdType(0)) {
     for (Entry& entry : entries_) {

@@ -12,7 +12,7 @@ namespace hullslam {
 // A run that has added keyframes to the map.
 struct Session {
   std::string name;  // such as the name of the sequence
-  // Its frames have this id or a larger one. Those of the next session have still larger ids.
+  // Its frames have this id or a larger one. Frames of the next session have still larger ids.
   FrameId first_frame;
 
   bool operator==(const Session&) const = default;

@@ -23,8 +23,8 @@ void WriteVocabulary(const std::filesystem::path& path, const Vocabulary& vocabu
                      VocabularyForm form);
 
 // The vocabulary that comes with HullSLAM: $HULLSLAM_VOCABULARY, else the file
-// ../Vocabulary/hullslam.bow beside $HULLSLAM_CONFIG, else that of the installation, else that of
-// the source tree. Throws InputError if there is none of them.
+// ../Vocabulary/hullslam.bow beside $HULLSLAM_CONFIG, else the file of the installation, else the
+// file of the source tree. Throws InputError if there is none of them.
 std::filesystem::path FindDefaultVocabulary();
 
 }  // namespace hullslam

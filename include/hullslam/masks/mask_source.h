@@ -30,7 +30,7 @@ std::vector<MaskFrame> RightMaskFrames(const ImageSequence& sequence);
 // The masks of one frame.
 struct FrameMasks {
   std::vector<InstanceMask> masks;  // in the order of the file
-  std::vector<size_t> rows;         // of each mask: its place in the file, without crowds
+  std::vector<size_t> rows;         // of each mask: its index in the file, without crowds
   bool is_missing = false;          // the frame has no file, or no entry in the file
   size_t without_area = 0;  // ignored masks without an outline of at least 1 px^2 in the image
   size_t crowds = 0;        // ignored masks that are marked as a group of objects

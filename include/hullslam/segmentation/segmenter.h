@@ -16,7 +16,7 @@ struct SegmenterOptions {
   std::vector<std::string> classes = {};  // only instances of these are given; empty: of all
   // A file with the name of one class per line. Empty: the names are in the file of the network.
   std::filesystem::path names = {};
-  // The longer side of the image that the network sees, px; 0: that of the network's input, or 640
+  // The longer side of the image that the network sees, px; 0: as the network's input, or 640
   // if the network takes any size.
   int size = 0;
   // Threads with which OpenCV runs the network; 0: as many as this program has set (OpenCV takes
@@ -39,7 +39,7 @@ class Segmenter {
   Segmenter& operator=(const Segmenter&) = delete;
 
   // The instances in an image (CV_8UC3 or CV_8UC4 with blue first, or CV_8UC1), best score first,
-  // in its pixels. Each has one outline, that of its largest part. The same image gives the same
+  // in its pixels. Each has one outline, around its largest part. The same image gives the same
   // bits. To be called by one thread at a time. Throws InputError if the network cannot be run on
   // this image, or gives values that are not finite; then this image has no masks, and others can
   // be tried.

@@ -19,7 +19,7 @@ struct BagSequenceOptions {
   std::string image_topic = {};
   std::string depth_topic = {};
   std::string info_topic = {};
-  // Only for OpenBagPairs, whose left images are those of `image_topic`.
+  // Only for OpenBagPairs, whose left images come from `image_topic`.
   std::string right_topic = {};
   std::string right_info_topic = {};
   // False for monocular SLAM: all images are frames, and no frame has depth.

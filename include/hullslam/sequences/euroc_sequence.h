@@ -34,9 +34,9 @@ struct EurocSequence {
 // Opens the left camera of a sequence of EuRoC (Burri et al., IJRR 2016) or TUM-VI (Schubert et
 // al., IROS 2018) in the format ASL: a folder with `mav0`, or `mav0` itself, in which
 // `cam0/data.csv` lists the images of `cam0/data` by nanoseconds. Images may have 16 bits. The
-// calibration is that of `cam0/sensor.yaml`, or else of a camchain of Kalibr: a YAML file whose
+// calibration is in `cam0/sensor.yaml`, or else in a camchain of Kalibr: a YAML file whose
 // name contains `camchain`, in `mav0`, above it, or in the folder `dso` of one of these. The ground
-// truth of the body, `state_groundtruth_estimate0/data.csv` or `mocap0/data.csv`, becomes that of
+// truth of the body, `state_groundtruth_estimate0/data.csv` or `mocap0/data.csv`, is converted to
 // the camera. Throws InputError with file and line for malformed lines and stamps that do not
 // increase, and for a missing list with its name.
 EurocSequence OpenEurocSequence(const std::filesystem::path& folder,
@@ -44,8 +44,8 @@ EurocSequence OpenEurocSequence(const std::filesystem::path& folder,
 
 // Opens both cameras of a sequence of EuRoC (OpenEurocSequence() has the format): cam0 is the left
 // one, cam1 the right one. Images are pairs if their stamps differ by at most a twentieth of the
-// time between two images; others are left out with a warning. The ground truth becomes that of the
-// rectified left camera. A `rectifier` takes the place of the calibration in the folder. Throws
+// time between two images; others are left out with a warning. The ground truth is converted to the
+// rectified left camera. A `rectifier` replaces the calibration in the folder. Throws
 // InputError as OpenEurocSequence() and StereoRectifier do, without any calibration, and if less
 // than half of the images have a partner.
 StereoSequence OpenEurocPairs(const std::filesystem::path& folder,

@@ -27,7 +27,7 @@ struct IclSequenceOptions {
 
 struct IclSequence {
   // The time stamps of the frames and of the ground truth are index / 30 s. The poses of the ground
-  // truth are those of right-handed cameras with y down.
+  // truth belong to right-handed cameras with y down.
   ImageSequence images;
   // A text for the user: which ground truth is used and how it was converted. Empty if there is
   // none.

@@ -52,7 +52,7 @@ struct ImageWarp {
   // Changes an image. In a step that resizes, each pixel gets the value of the nearest one if
   // `is_nearest`, as for depth and masks.
   std::function<cv::Mat(const cv::Mat& image, ImageSide side, bool is_nearest)> image = nullptr;
-  // Moves a pixel of the image before the step to its place after it.
+  // Moves a pixel of the image before the step to its position after it.
   std::function<Eigen::Vector2d(const Eigen::Vector2d& pixel, ImageSide side)> pixel = nullptr;
   // The rotation of the left camera, if the step turns it; the centre is the same.
   std::optional<Rigid3> after_from_before = std::nullopt;
@@ -66,10 +66,10 @@ struct ImageSequence {
   size_t available = 0;  // frames of the whole sequence, of which `frames` is the selection
   size_t unpaired = 0;   // images of the whole sequence without a depth or a right image
   // The file with the true trajectory. Absent if there is none, or if its stamps or poses must be
-  // converted before they can be compared with those of a run.
+  // converted before they can be compared with a run.
   std::optional<std::filesystem::path> groundtruth;
-  // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
-  // run.
+  // The converted true trajectory, if the stamps, axes or format of its file are not as in a run's
+  // trajectory.
   std::optional<Trajectory> converted_groundtruth;
   // Messages for the user about faults in the files that do not end a run.
   std::vector<std::string> warnings = {};
@@ -85,14 +85,14 @@ struct ImageSequence {
   // Decodes the image of a frame in colour. To be called like `load`.
   ColourLoader load_colour = LoadFrameColour;
   // The steps, in their order, by which both loaders change the images as read (AddWarp()). The
-  // masks that a run reads and the poses that it writes are those of the images as read.
+  // masks that a run reads and the poses that it writes belong to the images as read.
   std::vector<ImageWarp> warps = {};
 };
 
 // Adds a step at the end: to the warps, the choices and both loaders.
 void AddWarp(ImageWarp warp, ImageSequence& sequence);
 
-// The size of the images as read, px. `camera` is that of the images that the sequence gives.
+// The size of the images as read, px. `camera` belongs to the images that the sequence gives.
 cv::Size SizeAsRead(const ImageSequence& sequence, const PinholeCamera& camera);
 
 // Moves masks of an image as read into the image that a sequence with these warps gives.
@@ -100,13 +100,13 @@ void FitMasks(std::span<const ImageWarp> warps, ImageSide side, std::vector<Inst
 // The same for one mask of all images, 0 or 255. The result may have values between.
 cv::Mat FitMaskAll(std::span<const ImageWarp> warps, ImageSide side, cv::Mat mask);
 
-// Poses of the camera of the images that the sequence gives, as those of the camera as read.
+// Converts poses of the camera of the images that the sequence gives to the camera as read.
 Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);
 // The inverse of AsRead().
 Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses);
 
 // The true trajectory of the camera of the images that the sequence gives, from the field that is
-// set, which is that of the camera as read; absent without ground truth. The file may have
+// set, which belongs to the camera as read; absent without ground truth. The file may have
 // any of the forms in docs/outputs.md. What was converted or skipped is added to `notes`. Throws
 // InputError for a file that cannot be used.
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,

@@ -21,8 +21,8 @@ struct StereoSequence {
 // projections P0 to P3, and `times.txt` with seconds. The ground truth is `groundtruth.txt` or
 // `poses.txt` in the folder, or `poses/NAME.txt` of the data set. So are rectified drives of its
 // raw data, with `image_00/data` and so on, `image_00/timestamps.txt`, and calib_cam_to_cam.txt in
-// the folder or above it. Throws InputError with file and line. With a `rectifier`, it takes the
-// place of the calibration.
+// the folder or above it. Throws InputError with file and line. A `rectifier` replaces the
+// calibration.
 StereoSequence OpenKittiPairs(const std::filesystem::path& folder,
                               const FrameSelection& selection = {},
                               const std::shared_ptr<const StereoRectifier>& rectifier = nullptr);
@@ -49,8 +49,8 @@ struct StereoFolderOptions {
 // `image_left` and `image_right` as of TartanAir, with the poses of pose_left.txt, whose
 // images have the same names, or the same last numbers in them, or are equally many; or a video or
 // a folder of images that show both halves of a pair side by side, the left one first. Stamps are
-// those of the names if they are seconds or nanoseconds, else index / frames_per_second; those of a
-// video are its own. Throws InputError for anything else, and if fewer than half of the left images
+// in the names if these are seconds or nanoseconds, else index / frames_per_second; a video has its
+// own stamps. Throws InputError for anything else, and if fewer than half of the left images
 // have a partner; a warning counts images without one.
 ImageSequence OpenStereoFolder(const std::filesystem::path& path,
                                const StereoFolderOptions& options = {});

@@ -27,7 +27,7 @@ void CheckTumFolder(const std::filesystem::path& folder);
 
 // Opens a sequence in TUM's format. `rgb.txt` and `depth.txt` have one line `timestamp file` per
 // image; the images are paired one to one, closest first, within 0.02 s. If an association file is
-// given, its lines `timestamp rgb timestamp depth` are used instead. In place of a list, the
+// given, its lines `timestamp rgb timestamp depth` are used instead. Without a list, the
 // folders `rgb` and `depth` are enough if the names of the images have their time stamps or numbers
 // of frames; frames with the same number belong together. So are the folders of 7-Scenes
 // (frame-000000.color.png beside frame-000000.depth.png) and Replica (results/frame000000.jpg and

@@ -32,7 +32,7 @@ std::vector<std::string> PresetNames();
 // Reads a preset: one of PresetNames(), or the path of a file that ends in .yaml or .yml. The file
 // has the format of a settings file, but needs no intrinsics. Two keys are only for presets:
 // `preset.base` names another preset, whose settings come before its own, and `preset.needs_masks`
-// is true or false (if missing, that of the base, else false). Throws InputError that lists the
+// is true or false (if missing, as in the base, else false). Throws InputError that lists the
 // names if the name is unknown, and the errors of ReadSettings() for a bad file.
 Preset ReadPreset(const std::string& name_or_file);
 

@@ -55,7 +55,7 @@ struct SettingsNotes {
   // What the file was recognised as, if it is no settings file, and any lens other than Brown's.
   std::string camera_note;
   // The size of the images as read, px, if they are to be resized (Camera.newWidth); else 0. The
-  // camera is that of the resized images.
+  // camera describes the resized images.
   int read_width = 0;
   int read_height = 0;
   bool has_baseline = false;  // whether any of the sources has Camera.bf
@@ -88,7 +88,7 @@ std::filesystem::path FindDefaultSettings(const std::filesystem::path& sequence,
                                           const std::filesystem::path& config_folder);
 
 // The folder with the settings of known cameras: $HULLSLAM_CONFIG, else the folder of the
-// installation, else that of the source tree. Throws InputError if none of them is a folder.
+// installation, else the one of the source tree. Throws InputError if none of them is a folder.
 std::filesystem::path FindConfigFolder();
 
 // All current settings in the format of ReadSettings(), sorted by key.

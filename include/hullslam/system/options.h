@@ -27,7 +27,7 @@ struct RunOptions {
   void Bind(OptionTable& options);
 };
 
-// All options of a run. The defaults are those of the structs. The camera has no default.
+// All options of a run. The defaults are in the structs. The camera has no default.
 struct SystemOptions {
   SensorKind sensor = SensorKind::kRgbd;  // not a setting of the table: each program has its own
   PinholeCamera camera;

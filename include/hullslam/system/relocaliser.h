@@ -29,10 +29,10 @@ struct RelocalisedPose {
 
 // Finds the poses of single frames in a map without knowing the frames before them, like a tracker
 // that is lost. Frames come from System::Build() of a system with the same camera and image pyramid
-// as that of the map.
+// as the map.
 class Relocaliser {
  public:
-  // `map` is not null. The options are those of the frames and of tracking. Throws InputError if
+  // `map` is not null. The options are used for the frames and for tracking. Throws InputError if
   // SystemOptions::Validate does.
   Relocaliser(const SystemOptions& options, std::shared_ptr<const Map> map);
   ~Relocaliser();

@@ -51,7 +51,7 @@ struct ObjectCounts {
 };
 
 // A part of a run that could not be joined to the rest: the camera was lost before it, and saw no
-// earlier place again. Its poses have no known relation to those of the map.
+// earlier place again. Its poses have no known relation to the map.
 struct LeftIsland {
   IslandId id;  // counted from 0, in the order in which the islands were begun
   std::shared_ptr<const Map> map;
@@ -71,7 +71,7 @@ struct LeftIsland {
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does and for a map whose vocabulary has another
-  // content than that of the options, and CheckError for localization without a map. With a map of
+  // content than the options have, and CheckError for localization without a map. With a map of
   // earlier sessions, frame and keyframe ids go on after the largest of the map, and time stamps
   // may begin anywhere.
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
@@ -81,7 +81,7 @@ class System {
   // SystemOptions::rgb_order says that red is first. `second` is the depth image of an RGB-D
   // camera, as in ImageInput, or the right image of a stereo camera, which may have colours; a
   // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
-  // `masks` are those of the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
+  // `masks` show the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
   // makes them from images), `right_masks` those in the right image, which add lines of the same
   // objects. Throws InputError for images of another type or size, for depth in metres that cannot
   // be metres, for pairs that are swapped, twice the same or not rectified, and for masks that
@@ -97,7 +97,7 @@ class System {
 
   // The two halves of Track(image). Building needs no map, so one other thread may build the next
   // frames while this one tracks, but not during Reset(). Frames must be tracked in the order in
-  // which they were built; the results are then the same bits as those of Track(image). Both throw
+  // which they were built; the results are then the same bits as with Track(image). Both throw
   // as Track(image) does.
   BuiltFrame Build(const ImageInput& image);
   TrackedFrame Track(BuiltFrame built);
@@ -119,7 +119,7 @@ class System {
   // there is none and the masks show objects, it is made now. Landmarks on things of the dynamic
   // classes are removed. To be called by the thread of Track. Returns false, and does nothing, for
   // a frame that awaits no masks (any more): its masks were added, or its time stamp is more than
-  // kMaskPatience before that of the last frame. Throws as Track does.
+  // kMaskPatience before the last frame. Throws as Track does.
   bool AddMasks(FrameId frame, std::vector<InstanceMask> masks);
   static constexpr double kMaskPatience = 2.0;  // s
 

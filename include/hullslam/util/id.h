@@ -22,7 +22,7 @@ inline constexpr bool kIsRecycled<struct LandmarkTag> = true;
 //
 // Most ids are assigned in increasing order and are never used again. An id of a recycled kind
 // consists of a slot, which is used again, and of a generation, which counts these uses. So the id
-// of an erased entity never equals that of a later one. Ids of a recycled kind are ordered by their
+// of an erased entity never equals a later entity's id. Ids of a recycled kind are ordered by their
 // slots, so their order does not tell which is older.
 template <typename Tag>
 struct Id {

@@ -77,7 +77,7 @@ class OptionTable {
     std::string help;
     bool is_shared = false;  // sets other keys (AddShared) and has no value of its own
   };
-  // All options except the ignored ones, sorted by key. The value of a shared key is that of its
+  // All options except the ignored ones, sorted by key. A shared key has the value of its
   // first member.
   std::vector<Entry> Entries() const;
 

@@ -20,7 +20,7 @@ namespace hullslam {
 // because a slot whose generations are used up is not used again.
 //
 // The slot that was freed last is used first, so the same calls give the same ids. Iteration is in
-// the order of ids, which is that of their slots.
+// the order of ids, which is the order of their slots.
 template <typename IdType, typename Value, size_t kChunkSize = 64>
 class RecyclingTable {
   static constexpr uint32_t kNone = UINT32_MAX;

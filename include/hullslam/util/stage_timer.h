@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// The most samples of a stage that are kept: those of 4.5 minutes of a camera with 30 Hz.
+// The most samples of a stage that are kept: 4.5 minutes of a camera with 30 Hz.
 inline constexpr size_t kMostSamples = 8192;
 
 // All samples of a stage together.
@@ -71,7 +71,7 @@ struct TimeStatistics {
   double max = 0.0;
 };
 TimeStatistics Summarize(std::vector<double> samples);
-// The same of a stage. Mean and maximum are those of all its samples.
+// The same of a stage. Mean and maximum are over all its samples.
 TimeStatistics Summarize(const StageTimes& times, std::string_view stage);
 
 }  // namespace hullslam
