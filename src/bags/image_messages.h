@@ -12,7 +12,7 @@
 
 namespace hullslam {
 
-// The messages that a sequence is made of: those of ROS (sensor_msgs), and those of Foxglove with
+// The messages that a sequence is made of: messages of ROS (sensor_msgs), and of Foxglove with
 // the same content. Views refer to the bytes of the message.
 
 // A time as ROS has it: seconds and nanoseconds since a beginning that the recorder knows.

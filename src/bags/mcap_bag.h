@@ -50,7 +50,7 @@ class McapBag final : public Bag {
   std::string Place(uint64_t position) const;
   // The content of the chunk record whose content begins at `position`.
   std::string LoadChunk(uint64_t position, std::string_view record) const;
-  // Records that may be in a chunk: schemas, channels and messages. `place` is that of the content.
+  // Records that may be in a chunk: schemas, channels and messages. The content is at `place`.
   void Take(McapRecord kind, std::string_view content, const MessagePosition& place,
             const std::function<void(const BagMessage& message)>& visit);
   void TakeChunk(uint64_t position, std::string_view record,

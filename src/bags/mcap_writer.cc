@@ -56,7 +56,7 @@ uint16_t McapWriter::AddTopic(const std::string& name, const std::string& type,
   of_schema.PutText(schema);
   ByteWriter of_channel;
   of_channel.Put(id);
-  of_channel.Put(id);  // that of the schema
+  of_channel.Put(id);  // the schema's id
   of_channel.PutText(name);
   of_channel.PutText("cdr");
   of_channel.PutCount(0);  // no metadata

@@ -17,7 +17,7 @@ namespace hullslam {
 
 // Writes a file of MCAP (https://mcap.dev/spec) with messages of ROS 2: chunks that are compressed
 // with Zstandard, an index of the messages in each chunk, and a summary with an index of the chunks
-// and the numbers of messages, by which players seek. The file is put in place by Close() as a
+// and the numbers of messages, by which players seek. The file gets its name by Close() as a
 // whole. The same calls give the same bytes.
 class McapWriter {
  public:

@@ -32,7 +32,7 @@ int CloseFile(sqlite3_file* file) {
   return SQLITE_OK;
 }
 
-// SQLite expects zeros in the place of bytes behind the end.
+// SQLite expects zeros instead of bytes behind the end.
 int ReadBytes(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
   const int descriptor = FileOf(file).descriptor;
   auto* const begin = static_cast<char*>(bytes);

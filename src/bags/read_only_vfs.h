@@ -9,7 +9,7 @@ namespace hullslam {
 // - a database and its log (-wal) are opened for reading only, and must be regular files; the log
 //   may not be a link, and without one the log is empty;
 // - no journal is there, and nothing is locked, written or deleted;
-// - temporary files are those of SQLite, which have no name.
+// - temporary files are made by SQLite and have no name.
 // A database in the mode WAL can be read if its lock is exclusive (PRAGMA locking_mode), because
 // SQLite then needs no shared memory. Its path must be absolute.
 const char* ReadOnlyVfs();

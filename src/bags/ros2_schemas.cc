@@ -17,7 +17,7 @@ struct TypeFields {
 };
 
 // The types of common_interfaces (ROS 2 Humble and later), of vision_msgs 4 and of Foxglove's
-// schemas (https://docs.foxglove.dev/docs/sdk/schemas). The order of the fields is that of their
+// schemas (https://docs.foxglove.dev/docs/sdk/schemas). The fields are in the order of their
 // bytes.
 constexpr auto kTypes = std::to_array<TypeFields>({
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},

@@ -7,7 +7,7 @@
 namespace hullslam {
 
 // The definition of a type of ROS 2 in the form "ros2msg" of MCAP: its fields, then, after a line
-// of '=', those of each type that it contains. `type` is one that this program writes, such as
+// of '=', the fields of each type that it contains. `type` is one that this program writes, such as
 // "sensor_msgs/msg/CameraInfo"; throws CheckError for others.
 std::string Ros2Schema(std::string_view type);
 

@@ -25,7 +25,7 @@ class SqliteBag final : public Bag {
   explicit SqliteBag(std::filesystem::path path);
 
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
-  // The offset of a place is the id of the message.
+  // The offset of a position is the id of the message.
   std::string Read(const MessagePosition& place) override;
 
  private:

@@ -75,7 +75,7 @@ class Reader {
 };
 
 // Describes the fault of the tree; empty if the tree is valid. If the children of node 0 begin at
-// node 1, and the children of each other node begin where those of the previous node end, then
+// node 1, and the children of each other node begin where the previous node's children end, then
 // every node except the root has exactly one parent.
 std::string FindTreeFault(std::span<const uint32_t> first_child, const VocabularyHeader& header) {
   const uint32_t count = header.node_count;
@@ -91,7 +91,7 @@ std::string FindTreeFault(std::span<const uint32_t> first_child, const Vocabular
   }
   uint32_t level = 0;
   for (uint32_t end = 1; end < count; ++level) {
-    end = first_child[end];  // the children of this level end where those of the next level begin
+    end = first_child[end];  // this level's children end where the next level's begin
   }
   return level > header.levels
              ? fmt::format("has {} levels, expected at most {}", level, header.levels)

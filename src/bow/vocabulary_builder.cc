@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-// The children of all nodes, in the order of the list: those of node i are children[begin[i]] to
+// The children of all nodes, in the order of the list: node i has children[begin[i]] to
 // children[begin[i + 1] - 1].
 struct ChildLists {
   std::vector<uint32_t> begin;

@@ -14,8 +14,8 @@ namespace hullslam {
 // p (m, camera frame), its distance from the surface along the ray to the centre:
 //   |y| (1 - 1 / |A^-1 y|) / sigma
 // with y = p - t, the half axes A of QuadricInCamera, and sigma in m. It is negative inside the
-// ellipsoid. At the centre, where the ray has no direction, its derivative is zero. Parameters:
-// those of QuadricInCamera.
+// ellipsoid. At the centre, where the ray has no direction, its derivative is zero. Parameters
+// as in QuadricInCamera.
 class DepthAnchorCost final : public ObjectCost {
  public:
   DepthAnchorCost(std::span<const Eigen::Vector3d> points, double sigma);

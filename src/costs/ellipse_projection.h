@@ -54,7 +54,7 @@ class EllipseProjection {
   Eigen::Matrix<double, 5, 9> derivative_ = Eigen::Matrix<double, 5, 9>::Zero();
 };
 
-// A cost of the projected ellipse. Parameters: those of QuadricInCamera. Not defined unless the
+// A cost of the projected ellipse. Parameters as in QuadricInCamera. Not defined unless the
 // quadric is in front of the camera and its projected ellipse has an area.
 class EllipseCost : public ObjectCost {
  public:

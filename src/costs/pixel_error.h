@@ -17,7 +17,7 @@ namespace hullslam {
 // length:
 //   tangent          error_px
 //   algebraic_plane  2 h e with h = r z / f and e = error_px z / f
-//   relative_plane   2 r error_px / f^2, which is that of algebraic_plane divided by z^2
+//   relative_plane   2 r error_px / f^2, which is algebraic_plane divided by z^2
 //   algebraic_point  2 error_px / r
 //   distribution     error_px^2 (Wasserstein, for an ellipse that is shifted by error_px)
 //   overlap          1 - (r / (r + error_px))^2

@@ -17,7 +17,7 @@ double TangentDistance(const SilhouetteLine& line, const EllipseNumbers& ellipse
 
 // `tangent`: one residual per line, TangentDistance / sigma, with sigma in px. For the four sides
 // of a box these are the errors of the four bounding-box coordinates, as in QuadricSLAM (Nicholson
-// 2019). Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the
+// 2019). Parameters as in QuadricInCamera. Not defined unless the quadric is in front of the
 // camera.
 class TangentCost final : public ObjectCost {
  public:

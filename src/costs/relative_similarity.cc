@@ -11,8 +11,8 @@ namespace {
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 // Derivative of Log(Exp(w) Exp(omega)) by w at 0: the inverse of the left Jacobian of SO(3)
-// (Barfoot, "State Estimation for Robotics", section 7.1.5). That of Log(Exp(omega) Exp(w)) is the
-// one of -omega.
+// (Barfoot, "State Estimation for Robotics", section 7.1.5). For Log(Exp(omega) Exp(w)) it is the
+// same of -omega.
 Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& omega) {
   const double angle = omega.norm();
   const double square = angle * angle;

@@ -155,7 +155,7 @@ ImageSequence OpenImages(const fs::path& path, const DatasetChoices& choices) {
     return StereoFolderDataset().open_images({.path = path, .choices = choices});
   }
   for (const Dataset& dataset : Datasets()) {
-    // The images of a stereo camera are those of its left one.
+    // Of a stereo camera these are the left images.
     const SensorKind sensor = dataset.sensors.empty() || Has(dataset, SensorKind::kMonocular)
                                   ? SensorKind::kMonocular
                                   : dataset.sensors.front();

@@ -39,7 +39,7 @@ using PairOpener = std::function<CameraCalibration(
     const std::shared_ptr<const StereoRectifier>& rectifier, OpenedDataset& opened)>;
 
 // Opens the pairs of any data set. `file` has the settings; empty: the calibration of the data set
-// is used. With `replaces_calibration` (MakePairRectifier()), the file takes the place of such a
+// is used. With `replaces_calibration` (MakePairRectifier()), the file replaces such a
 // calibration. Throws InputError if the file has no baseline, if it asks for images that are
 // rectified and resized, and for a rectified camera that cannot be real.
 OpenedDataset OpenPairs(const DatasetRequest& request, const std::filesystem::path& file,

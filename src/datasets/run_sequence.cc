@@ -14,7 +14,7 @@ namespace hullslam {
 namespace {
 
 // Whether the run has read such a data set. Runs before December 2026 name only their program.
-// Those of VSLAM-LAB did not say either which list of images they had.
+// The runs of VSLAM-LAB did not say either which list of images they had.
 bool IsOf(const Dataset& dataset, const SequenceOfRun& run) {
   if (!run.dataset.empty()) {
     return run.dataset == dataset.name;

@@ -95,7 +95,7 @@ ImageSequence OpenVideoImages(const ImagesRequest& request) {
   return OpenImageStream(request.path, StreamOptionsOf(request.choices, request.origin)).images;
 }
 
-// ---- VSLAM-LAB, whose own program calls those of HullSLAM (scripts/vslamlab.py)
+// ---- VSLAM-LAB, whose own program calls HullSLAM's programs (scripts/vslamlab.py)
 
 bool IsVslamLab(const fs::path& path, SensorKind /*sensor*/) {
   return IsThere(path / "rgb.csv") && IsThere(path / "rgb_0");

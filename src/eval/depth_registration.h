@@ -13,7 +13,7 @@ namespace hullslam {
 class DepthRegistration {
  public:
   // Adds an image (CV_8UC1) and its depth image of the same shape, CV_16UC1 or CV_32FC1 in any
-  // unit. Both are compared at the size of the smaller one, at most at that of 640 x 480 px: larger
+  // unit. Both are compared at the size of the smaller one, at most at 640 x 480 px: larger
   // images have wider borders, and a smaller depth image does not know its steps to a pixel of the
   // other.
   void Add(const cv::Mat& grey, const cv::Mat& depth);

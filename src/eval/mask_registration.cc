@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kOrientations = 8;
 
-// The place in the stored image, in shares of its size, of a place (u, v) in the turned image.
+// The position in the stored image, in shares of its size, of (u, v) in the turned image.
 Eigen::Vector2d StoredPosition(int orientation, double u, double v) {
   switch (orientation) {
     case 2:

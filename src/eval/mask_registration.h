@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // Measures whether masks belong to the pixels of their images. The outline of an object runs along
-// borders in the image; that of a mask of another image, or of the image as a viewer turns it, runs
+// borders in the image; the outline of a mask of another image, or of a turned image, runs
 // anywhere.
 class MaskRegistration {
  public:
@@ -20,8 +20,8 @@ class MaskRegistration {
 
   // The length of all contours, px.
   size_t points() const { return points_; }
-  // The mean gradient along the contours, divided by that of the whole images, if the masks are
-  // those of the image turned by an orientation of EXIF, 1 (as stored) to 8. It is about 1 if masks
+  // The mean gradient along the contours, divided by the mean of the whole images, if the masks are
+  // of the image turned by an orientation of EXIF, 1 (as stored) to 8. It is about 1 if masks
   // and images have nothing to do with each other. Requires points() > 0.
   double Contrast(int orientation) const;
 

@@ -12,7 +12,7 @@ namespace hullslam {
 // Measures the agreement of the projected ellipses of an ellipsoid with its observations:
 //   siou        intersection over union with the hull, both clipped to the undistorted image. If
 //               the observation has only a box, the bounding box of the ellipse is compared with
-//               it. With a fisheye lens, solid angles take the place of areas.
+//               it. With a fisheye lens, solid angles are used instead of areas.
 //   siou_mask   the same with the contour; absent for a box
 //   mtd_m2      mean of |pi^T Q* pi| over the planes of the two-sided lines, with unit normals
 //               (Yu et al. 2025, Eq. 8); absent without such lines

@@ -13,7 +13,7 @@ namespace hullslam {
 // from the axis, so areas in the undistorted image of a fisheye lens weigh its rim too much.
 double SolidAngle(const PinholeCamera& camera, std::span<const Eigen::Vector2d> polygon);
 
-// Solid angle of the intersection over that of the union, 0 to 1, of a polygon and a convex one,
+// Solid angle of the intersection over the one of the union, 0 to 1, of a polygon and a convex one,
 // both of positive area; 0 for two empty sets.
 double OverlapOnSphere(const PinholeCamera& camera, std::span<const Eigen::Vector2d> polygon,
                        std::span<const Eigen::Vector2d> convex);

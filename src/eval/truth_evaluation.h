@@ -33,7 +33,7 @@ struct AlignedPoses {
   AlignmentKind alignment;
 };
 
-// The transform from the world of the run to the true world. The scale is that of the alignment by
+// The transform from the world of the run to the true world. The scale comes from the alignment by
 // positions. The orientations are used too, because the positions do not determine the rotation of
 // the world if the camera hardly moved: an error of orientation (radians) counts as much as an
 // error of position (m) at the mean distance of the mapped objects from the keyframes that observe

@@ -38,7 +38,7 @@ ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe,
   return made;
 }
 
-// The right image of a pair. `first` is its id if that of the keyframe is 0.
+// The right image of a pair. `first` is its id if the keyframe's id is 0.
 ColmapImage MakeRightImage(const KeyframeImage& image, uint32_t first, double baseline,
                            const Keyframe& keyframe, const ExportCamera& view,
                            LandmarkKeypoints& landmarks) {

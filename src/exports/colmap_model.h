@@ -28,7 +28,7 @@ struct ColmapKeypoint {
 };
 
 struct ColmapImage {
-  uint32_t id = 0;  // 1 + the id of the keyframe; those of right images come after all others
+  uint32_t id = 0;  // 1 + the id of the keyframe; right images come after all others
   std::string name;
   uint32_t camera = 1;  // 2 for the right one of a pair
   Rigid3 cam_from_world;

@@ -9,7 +9,7 @@
 namespace hullslam {
 
 // Images without distortion for programs that only know pinhole cameras. The focal lengths are
-// those of the camera, so images are neither enlarged nor reduced. The image is the largest
+// as in the camera, so images are neither enlarged nor reduced. The image is the largest
 // rectangle that all four borders of the raw image allow, so every pixel of it was seen.
 class ExportCamera {
  public:
@@ -24,7 +24,7 @@ class ExportCamera {
   // Whether a pixel of this view is inside of its image.
   bool Contains(const Eigen::Vector2d& pixel) const;
 
-  // The image of this view, from a raw image of the camera. `interpolation` is that of cv::remap.
+  // The image of this view, from a raw image of the camera. `interpolation` is as in cv::remap.
   cv::Mat Undistort(const cv::Mat& raw, int interpolation) const;
 
  private:

@@ -14,7 +14,7 @@ namespace hullslam {
 struct ExportOptions {
   std::filesystem::path output;                  // the file or folder to write
   ObjectShape shape = ObjectShape::kEllipsoids;  // gltf, ply
-  bool as_text = false;                          // colmap: text files in place of binary ones
+  bool as_text = false;                          // colmap: text files instead of binary ones
   std::set<std::string> masked_classes = {};     // nerfstudio: left out of training
 };
 

@@ -48,7 +48,7 @@ struct ExportInput {
 
 // Reads what a format needs. The map is also used for ExportNeed::kScene if there is one, because
 // it tells the colours of the points. Throws InputError, which names the file and what to do, if
-// something that the format needs is missing or broken, or if the map is not that of the run.
+// something that the format needs is missing or broken, or if the map is not the run's.
 ExportInput ReadExportInput(const ExportSource& source, ExportNeed need);
 
 }  // namespace hullslam

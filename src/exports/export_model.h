@@ -21,7 +21,7 @@ struct ColouredPoint {
 // frame of the map and in its unit of length (m with depth).
 struct ExportModel {
   std::optional<PinholeCamera> camera;  // absent if the files of the run do not have it
-  Trajectory trajectory;                // all frames with a pose; of a map those of the keyframes
+  Trajectory trajectory;                // all frames with a pose; of a map only the keyframes
   std::vector<StampedPose> keyframes;   // in the order of the map
   std::vector<ColouredPoint> points;
   Scene scene;  // the mapped objects and the upward direction
@@ -29,7 +29,7 @@ struct ExportModel {
 
 enum class ObjectShape { kEllipsoids, kBoxes };
 
-// The place of an object's shape: the unit sphere or the unit cube (results/unit_mesh.h) is
+// The position of an object's shape: the unit sphere or the unit cube (results/unit_mesh.h) is
 // multiplied by `half_extents` along its axes and then moved to the world.
 struct PlacedObject {
   const SceneObject* object = nullptr;

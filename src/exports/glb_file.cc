@@ -26,7 +26,7 @@ constexpr int kPoints = 0;
 constexpr int kLineStrip = 3;
 constexpr size_t kRoot = 0;  // index of the node "map"
 
-// Colours of glTF are linear, those of images are sRGB (IEC 61966-2-1).
+// Colours of glTF are linear, colours of images are sRGB (IEC 61966-2-1).
 double Linear(uint8_t channel) {
   const double value = channel / 255.0;
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);

@@ -17,7 +17,7 @@ namespace hullslam {
 // The results of a run as messages of ROS 2, in CDR. The world is the frame "map", the camera (x to
 // the right, y down, z ahead) the frame "camera". Lengths are in the unit of the map.
 
-// A time stamp as ROS has it, rounded to microseconds like those of trajectory.txt.
+// A time stamp as ROS has it, rounded to microseconds as in trajectory.txt.
 struct RosTime {
   int32_t seconds = 0;
   uint32_t nanoseconds = 0;

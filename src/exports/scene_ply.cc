@@ -39,7 +39,7 @@ void AddPyramids(const ExportModel& model, PlyWriter& file) {
   if (model.keyframes.empty()) {
     return;
   }
-  PinholeCamera usual;  // the shape of a common camera, if that of the run is not known
+  PinholeCamera usual;  // the shape of a common camera, if the run's camera is not known
   usual.fx = usual.fy = usual.width;
   usual.cx = usual.width / 2.0;
   usual.cy = usual.height / 2.0;

@@ -19,7 +19,7 @@ int FeatureOptions::MostLevels(int width, int height) const {
 }
 
 // In a larger image a patch covers less of the scene. So there are more levels, until the coarsest
-// one is not larger than that of a usual image. A smaller image keeps the usual levels as long as
+// one is not larger than in a usual image. A smaller image keeps the usual levels as long as
 // it has room for them.
 int FeatureOptions::LevelsFor(int width, int height) const {
   constexpr int kMostOfTable = 16;  // the range of ORBextractor.nLevels
@@ -35,7 +35,7 @@ int FeatureOptions::LevelsFor(int width, int height) const {
 // addition. These 8 levels have the usual number of features per area, so a wide image has more of
 // them, which tell of the left and the right what a usual image does not show; but never fewer than
 // a usual image. In a smaller image a pixel is a larger angle, so each landmark is less precise.
-// The precision of a pose from N landmarks is that of one over the root of N, so N grows with the
+// N landmarks give a pose the precision of one landmark over the root of N, so N grows with the
 // square of the angle.
 int FeatureOptions::FeaturesFor(int width, int height) const {
   const FeatureOptions usual;

@@ -25,7 +25,7 @@ Orientation ComputeOrientation(const cv::Mat& image, cv::Point center);
 
 // Steered BRIEF of Rublee et al. 2011, with the tests and the order of bits of OpenCV: bit i of the
 // descriptor is the result of test i. `blurred` is the image (CV_8UC1) after a Gaussian blur of 7 x
-// 7 px with sigma 2 px; `center` as above. The result equals that of OpenCV's ORB, except if a
+// 7 px with sigma 2 px; `center` as above. The result equals OpenCV's ORB, except if a
 // rotated test point lies within rounding (1e-6 px) of the border between two pixels.
 Descriptor ComputeDescriptor(const cv::Mat& blurred, cv::Point center,
                              const Orientation& orientation);

@@ -13,7 +13,7 @@ struct BriefTest {
 
 // The 256 tests of ORB, learned from images of the PASCAL 2006 set for high variance and low
 // correlation (Rublee, Rabaud, Konolige, Bradski: ORB, an efficient alternative to SIFT or SURF,
-// ICCV 2011). The numbers are those of OpenCV's ORB (`bit_pattern_31_`), which the vocabulary of
+// ICCV 2011). The numbers are from OpenCV's ORB (`bit_pattern_31_`), which the vocabulary of
 // ORB-SLAM2 uses too.
 inline constexpr std::array<BriefTest, 256> kOrbPattern = {{
     {8, -3, 9, 5},       {4, 2, 7, -12},      {-11, 9, -8, 2},     {7, -12, 12, -13},

@@ -29,7 +29,7 @@ struct ShrinkBlock {
 // INTER_LINEAR_EXACT, in a third of its time. Keeps tables and buffers from image to image.
 class ImageShrinker {
  public:
-  // `image` is CV_8UC1, and no side of `size` is larger than that of the image; throws CheckError
+  // `image` is CV_8UC1, and no side of `size` is larger than in the image; throws CheckError
   // otherwise. Reuses the memory of `shrunk` if it has the size already.
   void Shrink(const cv::Mat& image, cv::Size size, cv::Mat& shrunk);
 

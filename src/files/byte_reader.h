@@ -70,7 +70,7 @@ class ByteReader {
     bytes_.remove_prefix(size);
     return text;
   }
-  // The next `count` bytes, which refer to those of the constructor.
+  // The next `count` bytes, as a view of the constructor's bytes.
   std::string_view GetRaw(size_t count) {
     Require(count <= bytes_.size(), "is cut off");
     const std::string_view raw = bytes_.substr(0, count);

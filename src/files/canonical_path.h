@@ -10,7 +10,7 @@ namespace hullslam {
 // It does not end in a slash.
 std::filesystem::path CanonicalPath(const std::filesystem::path& path);
 
-// The last name of this path: that of the folder or file, also if `path` ends in a slash.
+// The last name of this path: the name of the folder or file, also if `path` ends in a slash.
 std::string CanonicalName(const std::filesystem::path& path);
 
 // Whether `path` is the folder or file `outer`, or inside of this folder. Both paths may be of any

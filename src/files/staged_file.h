@@ -9,7 +9,7 @@ namespace hullslam {
 
 class StagingFolder;
 
-// A file that is written piece by piece and then put in place as a whole. Until then it is in a
+// A file that is written piece by piece and then gets its path as a whole. Until then it is in a
 // temporary folder beside its path, and an earlier file at the path is unchanged. If the path is a
 // link, all this refers to the file that the link leads to; the link stays. What killed processes
 // have left of such a folder is removed by the next one that writes the same path.

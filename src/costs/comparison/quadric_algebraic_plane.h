@@ -36,7 +36,7 @@ std::vector<LinePlane> PlanesOf(const PinholeCamera& camera, std::span<const Sil
 
 // `algebraic_plane` (Yu et al. 2025, Eq. 8): one residual per line, pi^T Q* pi / sigma, with sigma
 // in m^2. It is h^2 - d^2 of LinePlane and therefore depends on the scale of the world: see
-// RelativePlaneCost, which does not. Parameters: those of QuadricInCamera. Not defined unless the
+// RelativePlaneCost, which does not. Parameters as in QuadricInCamera. Not defined unless the
 // quadric is in front of the camera.
 class AlgebraicPlaneCost final : public ObjectCost {
  public:

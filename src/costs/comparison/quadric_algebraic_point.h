@@ -12,7 +12,7 @@ namespace hullslam {
 
 // `algebraic_point` (QISO-SLAM): one residual per contour point, p^T C p / sigma. The conic C is
 // scaled to -1 at the centre of its ellipse, so that p^T C p = (p - m)^T S^-1 (p - m) - 1. This is
-// zero on the projected ellipse. It has no unit, nor has sigma. Parameters: those of
+// zero on the projected ellipse. It has no unit, nor has sigma. Parameters as in
 // QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
 // ellipse has an area.
 class AlgebraicPointCost final : public EllipseCost {

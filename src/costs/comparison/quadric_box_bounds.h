@@ -20,16 +20,16 @@ struct BoxBound {
 };
 
 // The bound of the part of an ellipse that is inside the sides of `box` for which `is_cut` is true;
-// the other sides do not limit it. It is that of the extreme point of the ellipse or, if this is
+// the other sides do not limit it. It belongs to the extreme point of the ellipse or, if this is
 // outside, the farthest intersection with a side that is cut. If no point of the ellipse is inside,
-// it is that of the whole ellipse.
+// it is the bound of the whole ellipse.
 BoxBound ClippedBound(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box,
                       const std::array<bool, 4>& is_cut, BoxSide side);
 
 // `box_bounds` (QuadricSLAM, Nicholson et al. 2019, section III.D): four residuals, the bounds of
-// the bounding box of the projected ellipse minus those of the detection's box, over sigma (px).
+// the bounding box of the projected ellipse minus the detection's box, over sigma (px).
 // Where the border of the image cuts the detection, the projected ellipse is cut there too.
-// Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera
+// Parameters as in QuadricInCamera. Not defined unless the quadric is in front of the camera
 // and its projected ellipse has an area.
 class BoxBoundsCost final : public EllipseCost {
  public:

@@ -17,7 +17,7 @@ enum class DistributionDistance { kWasserstein, kBhattacharyya };
 //     |m1 - m2|^2 + tr(S1 + S2 - 2 (S1^1/2 S2 S1^1/2)^1/2)
 //   Bhattacharyya, without unit, with S = (S1 + S2) / 2:
 //     (m1 - m2)^T S^-1 (m1 - m2) / 8 + ln(det S / sqrt(det S1 det S2)) / 2
-// Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera
+// Parameters as in QuadricInCamera. Not defined unless the quadric is in front of the camera
 // and its projected ellipse has an area.
 class DistributionCost final : public EllipseCost {
  public:

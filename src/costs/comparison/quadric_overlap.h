@@ -23,9 +23,9 @@ Overlap EllipseOverlap(const EllipseNumbers& ellipse, std::span<const Eigen::Vec
 // two sides coincide.
 Overlap BoxOverlap(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box);
 
-// `overlap` (Hosseinzadeh 2019): one residual, (1 - IoU) / sigma, without unit. The IoU is that of
-// the projected ellipse with the region, or that of its bounding box with a box. Parameters: those
-// of QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
+// `overlap` (Hosseinzadeh 2019): one residual, (1 - IoU) / sigma, without unit. The IoU is between
+// the projected ellipse and the region, or between its bounding box and a box. Parameters as in
+// QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
 // ellipse has an area.
 class OverlapCost final : public EllipseCost {
  public:

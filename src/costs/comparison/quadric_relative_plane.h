@@ -33,9 +33,9 @@ namespace hullslam {
 // z is a variable of the optimisation, not a constant: with its value at the start, r would be the
 // literal residual again. With dr = d(pi^T Q* pi) / z^2 - 2 r / z dz, only the derivative with
 // respect to the shift along the optical axis gets a second term. At the start of an optimisation,
-// all residuals and weights are equal to those of `algebraic_plane` with the same error in pixels.
+// all residuals and weights are as with `algebraic_plane` and the same error in pixels.
 //
-// Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera.
+// Parameters as in QuadricInCamera. Not defined unless the quadric is in front of the camera.
 class RelativePlaneCost final : public ObjectCost {
  public:
   RelativePlaneCost(const PinholeCamera& camera, std::span<const SilhouetteLine> lines,
