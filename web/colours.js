@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colours of classes, and those of the theme.
+// The colours of classes and of the theme.
 
-// The hue of a class in degrees. It depends on the name alone and is that of objects.ply, so a class
+// The hue of a class in degrees. It depends on the name alone and is as in objects.ply, so a class
 // has the same colour in the live view, in the report and in files. The hash is FNV-1a of 32 bits
 // over the name in UTF-8, as ColourOfClass() of the library computes it.
 function hueOf(label) {

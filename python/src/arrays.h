@@ -23,7 +23,7 @@ struct PixelSpan {
   cv::Mat image;
 };
 
-// In the functions below, `size` is that of the camera, which is checked before anything is copied;
+// In the functions below, `size` is the camera's, which is checked before anything is copied;
 // an empty size is not checked.
 
 // A colour or grey image: uint8, of shape (height, width) or (height, width, 3 or 4). Throws

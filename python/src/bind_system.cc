@@ -125,7 +125,7 @@ bool AddMasks(LiveSystem& system, int64_t frame, const MaskList& masks) {
   return WithoutGil([&] { return system.AddMasks(frame, masks.masks); });
 }
 
-// Signals such as that of Ctrl+C are kept until the call returns, which they make return early.
+// Signals such as Ctrl+C's are kept until the call returns, which they make return early.
 void Finish(LiveSystem& system) {
   bool is_interrupted = false;
   WithoutGil([&] {

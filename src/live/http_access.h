@@ -34,8 +34,8 @@ struct HttpAccessRules {
 // Judges a request. `is_control` says that it changes the run, which always needs the token.
 //   host    A foreign web site can give its own name the address 127.0.0.1 (DNS rebinding), and the
 //           browser then takes this server for a part of that site. So names in Host other than
-//           localhost and that of this computer are refused, and on the loopback all addresses but
-//           those of the loopback. The port may be any, because it can be forwarded.
+//           localhost and this computer's name are refused, and on the loopback all addresses but
+//           the loopback's own. The port may be any, because it can be forwarded.
 //   origin  If the browser names the page that sends the request, this must be a page of this
 //           server.
 HttpAccess JudgeRequest(const HttpAccessRules& rules, const HttpRequest& request, bool is_control);

@@ -30,20 +30,20 @@ struct LiveLoss {
   double from = 0.0;  // time stamps of its first and its last frame, s
   double to = 0.0;
   size_t frames = 0;
-  std::string reason;  // that of its first frame
+  std::string reason;  // why its first frame is lost
 };
 
 // The knowledge of the viewer about the run at one moment.
 struct LiveState {
-  std::shared_ptr<const Map> map;  // that of the last frame; null before the first keyframe
+  std::shared_ptr<const Map> map;  // of the last frame; null before the first keyframe
   std::vector<TrackedFrame> path;  // evenly chosen; their keyframes are in the map
   size_t path_thinnings = 0;       // TrackHistory::thinnings()
   std::vector<LiveLoss> losses;    // the latest ones
   size_t loss_count = 0;           // all that there were
 };
 
-// The place with room for one frame between the thread that tracks and the viewer. Newer frames
-// take the place of older ones, so neither waits and nothing grows. Only what is needed to draw the
+// The buffer with room for one frame between the thread that tracks and the viewer. Newer frames
+// replace older ones, so neither waits and nothing grows. Only what is needed to draw the
 // path is kept of each frame.
 class LiveInbox {
  public:

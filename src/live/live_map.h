@@ -35,7 +35,7 @@ struct LiveMapChange {
   bool were_edges_changed = false;
 };
 
-// The part of a map that browsers show: that of the main island (map/islands.h), thinned if it is
+// The part of a map that browsers show: the main island (map/islands.h), thinned if it is
 // large. A landmark is shown once its distance is known (map/located_landmarks.h).
 class LiveMap {
  public:

@@ -49,7 +49,7 @@ class LiveMessages {
   std::string Frame(const LiveFrame* frame, const LiveControls& controls, double rate);
   // Follows the map and the path. Returns what has changed since the last call; nothing if there is
   // no difference. Without `is_limited`, all changes are made at once. If the run `is_at_rest`, in
-  // a pause or at its end, the errors are those of the whole path; else they follow it with some
+  // a pause or at its end, the errors are of the whole path; else they follow it with some
   // delay. The map of the state must not be null.
   std::optional<std::string> MapChange(const LiveState& state, bool is_limited,
                                        bool is_at_rest = false);

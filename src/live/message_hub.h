@@ -17,8 +17,8 @@ namespace hullslam {
 using SharedMessage = std::shared_ptr<const std::string>;
 
 // Hands messages from the thread that makes them to any number of readers that take them at their
-// own pace. The memory does not grow with the number of messages: each reader has two places.
-//   frame  the newest message about the current frame. A newer one takes its place.
+// own pace. The memory does not grow with the number of messages: each reader has two slots.
+//   frame  the newest message about the current frame. A newer one replaces it.
 //   map    a change of the map. If the next change comes before this one was taken, both are
 //          dropped, and the reader is behind.
 // A reader that is behind gets nothing until it has taken all that it was given, and then the whole

@@ -21,7 +21,7 @@ struct RowChange {
 };
 
 // A table of numbers as the browsers have it, by which only its changes need to be sent. Each row
-// belongs to an id. Rows are without gaps: the last row takes the place of one that is removed.
+// belongs to an id. Rows are without gaps: the last row moves to where one was removed.
 class RowTable {
  public:
   // The first `compared` of the `width` numbers of a row may change.

@@ -18,7 +18,7 @@ struct Travel {
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last);
 
 // The length, in units of the map, that the options mean by a metre. A map with depth has the metre
-// as its unit. A map without depth has any unit, so the depth of the scene takes its place: the
+// as its unit. A map without depth has any unit, so the depth of the scene is used instead: the
 // median depth of the landmarks that the keyframe observes.
 double MetreOf(const Map& map, KeyframeId keyframe, const Sensor& sensor);
 

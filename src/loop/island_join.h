@@ -23,7 +23,7 @@ bool IsConfirmedByNeighbour(const Map& corrected, const Sensor& sensor, const Lo
 // Looks for the place of a keyframe in other islands by matches without words
 // (MatchLandmarksOf), so the islands may show the same place in images that are far apart, and an
 // island may be a single keyframe. Returns the correction that joins the two islands; null if there
-// is no such place. `seed` is that of the run.
+// is no such place. `seed` is the run's.
 std::optional<MapCorrection> FindJoin(Map& map, KeyframeId query, const Sensor& sensor,
                                       const LoopOptions& options, const ObjectOptions& objects,
                                       uint64_t seed);

@@ -36,7 +36,7 @@ bool AreApart(const Map& map, KeyframeId a, KeyframeId b) {
   return IslandOf(map, a) != IslandOf(map, b);
 }
 
-// Whether the loop edge is in the map. Those of a culled keyframe belong to its nearest ancestor.
+// Whether the loop edge is in the map. Edges of a culled keyframe belong to its nearest ancestor.
 bool AreJoined(const Map& map, const MapCorrection::LoopEdge& edge) {
   const KeyframeId a = map.NearestAlive(edge.a);
   const KeyframeId b = map.NearestAlive(edge.b);

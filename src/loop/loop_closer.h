@@ -28,7 +28,7 @@ struct LoopQuery {
 // Such a loop is sought again.
 class LoopCloser {
  public:
-  // `sensor` must outlive the loop closer. `seed` is that of the run.
+  // `sensor` must outlive the loop closer. `seed` is the run's.
   LoopCloser(const Sensor& sensor, const LoopOptions& options, const ObjectOptions& objects,
              uint64_t seed);
 

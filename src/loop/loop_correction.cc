@@ -164,7 +164,7 @@ MapCorrection MoveIsland(const Map& map, const Loop& loop) {
   const Rigid3& candidate = map.keyframes().At(loop.candidate).cam_from_world;
   const IslandId of_query = IslandOf(map, loop.query);
   const IslandId of_candidate = IslandOf(map, loop.candidate);
-  // The transform from the world of the older island to that of the younger one.
+  // The transform from the world of the older island to the world of the younger one.
   const Sim3 candidate_from_query =
       Inverse(Sim3(candidate)) * Inverse(loop.query_from_candidate) * Sim3(query);
   const Sim3 younger_from_older =

@@ -20,7 +20,7 @@ namespace hullslam {
 struct Loop {
   KeyframeId query;      // the newer end
   KeyframeId candidate;  // the older end
-  // Between the camera frames. The unit of length of each is that of the map at this keyframe.
+  // Between the camera frames. Each has the unit of length of the map at this keyframe.
   Sim3 query_from_candidate;
   // The landmarks around the candidate that were found in the query, with their keypoints.
   std::vector<FoundLandmark> landmarks;
@@ -35,7 +35,7 @@ struct LoopVerdict {
 // Checks whether a candidate really shows the query's place. Landmarks are matched by words. RANSAC
 // finds a similarity, which is refined while more landmarks are found with it (Mur-Artal and Tardos
 // 2014 and 2017). Then the landmarks around the candidate are searched in the query. `fix_scale`:
-// the similarity has scale 1, as in RGB-D. `seed` is that of the run. The map must have a
+// the similarity has scale 1, as in RGB-D. `seed` is the run's. The map must have a
 // vocabulary.
 LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,
                        bool fix_scale, uint64_t seed, const LoopOptions& options);

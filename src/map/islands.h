@@ -8,7 +8,7 @@
 namespace hullslam {
 
 // The first function gives the island of a keyframe, which may be culled. The second one gives the
-// island of an object, which is that of its reference keyframe. Invalid if the keyframe has no pose
+// island of an object, which is its reference keyframe's. Invalid if the keyframe has no pose
 // (Map::NearestAlive).
 IslandId IslandOf(const Map& map, KeyframeId keyframe);
 IslandId IslandOf(const Map& map, const ObjectLandmark& object);

@@ -9,7 +9,7 @@
 namespace hullslam {
 
 // The order of keyframes in time. Ids of keyframes do not give it: masks that come late can make a
-// keyframe of a frame that is earlier than those of older keyframes (LateDetections). Ids of frames
+// keyframe of a frame that is earlier than older keyframes' frames (LateDetections). Ids of frames
 // do.
 
 // The frame that a keyframe was made of. The keyframe may be culled.

@@ -24,7 +24,7 @@ void Require(bool condition, KeyframeId id, const char* what) {
   }
 }
 
-// The number of keyframes that the map has had. Every id below it is that of a keyframe or of a
+// The number of keyframes that the map has had. Every id below it belongs to a keyframe or to a
 // culled keyframe.
 uint32_t CountKeyframes(const MapTables& tables) {
   return std::max(tables.keyframes.NextId().value, tables.culled.NextId().value);
@@ -59,7 +59,7 @@ void CheckFrames(const MapTables& tables) {
 
 enum class Pose : uint8_t { kUnknown, kSought, kKnown, kNone };
 
-// Whether each keyframe has a pose, by its id. That of a culled keyframe is relative to another
+// Whether each keyframe has a pose, by its id. The pose of a culled keyframe is relative to another
 // one, which may be culled too, and so on. The last one must be alive, or have been removed with
 // its island: then none of them has a pose.
 std::vector<Pose> FindPoses(const MapTables& tables) {

@@ -15,7 +15,7 @@ namespace hullslam {
 // an island. The frames must be consistent in themselves: one entry of each list
 // per keypoint, one entry of Keyframe::landmarks per keypoint and of Keyframe::objects per
 // detection. Throws InputError if no map can have such tables. The message has the first fault and
-// names the entity. `vocabulary` is that of the words of the frames; null: the map will have no
+// names the entity. `vocabulary` has the words of the frames; null: the map will have no
 // index, and the words are not checked.
 Map RestoreMap(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 

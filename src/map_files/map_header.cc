@@ -15,7 +15,7 @@ constexpr uint8_t kStereo = 3;
 // Added to the number of the sensor if the camera has more than Brown's five coefficients. Then
 // these follow the camera.
 constexpr uint8_t kMoreOfLens = 16;
-// Added in its place for a lens that was not known when the format began. Then its type and its
+// Added instead of it for a lens that was not known when the format began. Then its type and its
 // coefficients follow the camera.
 constexpr uint8_t kNamedLens = 32;
 

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// The folder in which the vectors of masks are: that of the masks or, for a JSON file, the folder
+// The folder in which the vectors of masks are: the masks' folder or, for a JSON file, the folder
 // with its name without ".json".
 std::filesystem::path EmbeddingFolder(const std::filesystem::path& masks);
 

@@ -49,7 +49,7 @@ class BoxMasks : public TextMasks {
   }
 
   // The numbers are shares of the width and height of the image: the outer edge of the first pixel
-  // is at 0, that of the last one at 1.
+  // is at 0, the outer edge of the last one at 1.
   InstanceMask ParseYolo(const TextRow& row) const {
     // A line of five columns ends in the height, which may be 1 too.
     const size_t columns =

@@ -38,7 +38,7 @@ int64_t JsonInteger(const JsonRecord& record, const char* name);
 class CocoCategories {
  public:
   void Add(const JsonRecord& record);
-  // The name of a category; without categories in the file, that of COCO's. Without a category, the
+  // The name of a category; without categories in the file, COCO's name. Without a category, the
   // name of the class, and "object" if there is neither.
   std::string NameOf(const JsonRecord& record, const std::optional<int64_t>& category,
                      const std::optional<std::string>& class_name) const;

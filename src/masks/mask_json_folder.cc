@@ -115,7 +115,7 @@ class JsonFolderMasks : public MaskSource {
   std::set<std::string> stems_;
 };
 
-// A single file that is not named as a frame is rather that of all images. LabelMe's files are
+// A single file that is not named as a frame rather belongs to all images. LabelMe's files are
 // beside the images.
 bool IsJsonFolder(const MaskProbe& probe) {
   const bool is_label_png = probe.has_images && probe.has_classes_json;

@@ -37,7 +37,7 @@ constexpr const char* kClassesFile = "classes.json";
 
 using InstanceClasses = std::map<int, InstanceClass>;
 
-// The classes of all frames, and those of single frames, which take precedence.
+// The classes of all frames, and the classes of single frames, which take precedence.
 struct LabelClasses {
   InstanceClasses of_all;
   std::map<std::string, InstanceClasses> of_frame;

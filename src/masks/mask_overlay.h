@@ -12,8 +12,8 @@
 namespace hullslam {
 
 // Draws the masks of a frame and their detections over its raw grey image (with lens distortion).
-// The picture is CV_8UC3 and has twice the size of the image. Outlines are white; those of rejected
-// masks are red and have the reason as a label. Hulls are yellow and have class and score as a
+// The picture is CV_8UC3 and has twice the size of the image. Outlines are white; rejected
+// masks have red ones with the reason as a label. Hulls are yellow and have class and score as a
 // label. Two-sided lines are green and one-sided lines orange; only a short piece of each line is
 // drawn, with a tick that points to the outside.
 cv::Mat DrawMasks(const cv::Mat& grey, const PinholeCamera& camera,

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostColumns = 64;  // enough to recognise a format
 
-constexpr size_t kEnoughColumns = 5;  // those of a box; fewer do not tell the format
+constexpr size_t kEnoughColumns = 5;  // of a box; fewer do not tell the format
 
 // Stores the first row of a text file, or the first one with enough columns. Returns false if there
 // is no such row.

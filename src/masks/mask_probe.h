@@ -29,7 +29,7 @@ struct MaskProbe {
   bool has_classes_json = false;
   bool has_names_of_frames = false;  // files are named as frames, and only they count
   bool has_paper_folder = false;     // has a folder segmentation_txt
-  std::string json_key;              // for a file: that of the given keys that comes first in it
+  std::string json_key;              // for a file: the one of the given keys that comes first
 };
 
 // Searches a file for the keys. Throws InputError if the path does not exist or cannot be read.

@@ -27,7 +27,7 @@ void AddShares(double x, double y, const cv::Size& image, std::string& text) {
   text += ' ' + ShareText(x, image.width) + ' ' + ShareText(y, image.height);
 }
 
-// The corners of a box are those of BoxOutline(): pixels with integer centres. The shares of a box
+// The corners of a box are as in BoxOutline(): pixels with integer centres. The shares of a box
 // begin at the edge of the first pixel.
 void AddBox(const std::vector<Eigen::Vector2d>& corners, const cv::Size& image, std::string& text) {
   const Eigen::Vector2d centre = 0.5 * (corners[0] + corners[2]);

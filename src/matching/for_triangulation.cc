@@ -87,7 +87,7 @@ void FindNear(const Eigen::Vector3d& line, std::span<const Block> blocks,
   }
 }
 
-// Those of the given keypoints of b whose descriptors are similar to that of the keypoint of a.
+// The given keypoints of b whose descriptors are similar to the descriptor of a's keypoint.
 HULLSLAM_FUNCTION_CLONES
 void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descriptors,
                  std::span<const uint32_t> indices, int max_distance,

@@ -13,7 +13,7 @@ constexpr size_t kNeighbours = 10;
 constexpr double kCommonShare = 0.8;
 constexpr double kScoreShare = 0.75;
 
-// The sum of the scores of those keyframes in `similar` that belong to the place of `keyframe`.
+// The sum of the scores of the keyframes in `similar` that belong to the place of `keyframe`.
 double PlaceScore(const Map& map, KeyframeId keyframe,
                   const std::vector<SimilarKeyframe>& similar) {
   IdSet<KeyframeId> place;

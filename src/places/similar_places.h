@@ -16,7 +16,7 @@ std::vector<KeyframeId> PlaceOf(const Map& map, KeyframeId keyframe);
 void KeepMostCommon(std::vector<SimilarKeyframe>& similar);
 
 // The most similar keyframe of each good place. A place is good if the sum of the scores of its
-// keyframes is at least 75 % of that of the best place (Mur-Artal and Tardos 2014). The order of
+// keyframes is at least 75 % of the sum of the best place (Mur-Artal and Tardos 2014). The order of
 // `similar` is kept.
 std::vector<KeyframeId> BestOfPlaces(const Map& map, const std::vector<SimilarKeyframe>& similar);
 

@@ -51,7 +51,7 @@ SequenceOfRun ReadSequence(const JsonNode& provenance, const std::string& progra
   return sequence;
 }
 
-// The poses of the rectified camera, from those of the camera as read.
+// The poses of the rectified camera, from the poses of the camera as read.
 Trajectory OfRectified(const SequenceOfRun& sequence, Trajectory as_read) {
   const auto choice = sequence.choices.find("rectified_from_left");
   if (choice == sequence.choices.end()) {

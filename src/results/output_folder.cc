@@ -86,7 +86,7 @@ void CreateFolder(const fs::path& folder) {
   }
 }
 
-// Refuses a folder with files that no run wrote, because they would be lost or mixed with those of
+// Refuses a folder with files that no run wrote, because they would be lost or mixed with files of
 // the run.
 void CheckEntries(const fs::path& folder, const std::string& index) {
   const Names of_run = NamesOfRun(folder / index);
@@ -135,7 +135,7 @@ void Move(const fs::path& from, const fs::path& to) {
   }
 }
 
-// Moves the files of a run from the folder `ready` to the output folder and removes those of the
+// Moves the files of a run from the folder `ready` to the output folder and removes files of the
 // former run. If it is interrupted, it can be called again: the former index is removed before any
 // file is replaced, and the new one is moved last.
 void MoveFiles(const fs::path& ready, const fs::path& folder) {

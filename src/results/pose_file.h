@@ -42,7 +42,7 @@ std::optional<Rigid3> PoseOfMatrix(const Eigen::Matrix<double, 3, 4>& matrix);
 // Whether a file without stamps has the poses of that many frames.
 bool FitsFrames(const PoseFile& file, size_t frames);
 
-// Gives the poses of a file without stamps those of the frames. Throws InputError unless
+// Gives the poses of a file without stamps the stamps of the frames. Throws InputError unless
 // FitsFrames().
 void SetStamps(const std::filesystem::path& path, std::span<const double> stamps, PoseFile& file);
 

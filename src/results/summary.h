@@ -117,7 +117,7 @@ struct NetworkSummary {
   std::optional<size_t> every = std::nullopt;  // --segment-every; absent in real time
   std::vector<std::string> classes = {};       // that it knows
   size_t images = 0;                           // that it was run on
-  size_t failures = 0;                         // those of them that it made no masks of
+  size_t failures = 0;                         // of these, the ones that it made no masks of
 };
 
 // One mask of all images.

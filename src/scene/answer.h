@@ -32,7 +32,7 @@ inline constexpr double kLeastScore = 0.1;
 // direction is not known.
 std::vector<Answer> AnswerQuestion(const Scene& scene, const AskedThing& question);
 
-// The objects of a class whose surface is within `distance` of that of an object, m: the nearest
+// The objects of a class whose surface is within `distance` of an object's surface, m: the nearest
 // first. Without labels, of all classes. The score falls with the distance, from the share of the
 // class to kLeastScore of it.
 std::vector<Answer> FindWithin(const Scene& scene, const std::set<std::string>& labels,

@@ -24,7 +24,7 @@ bool IsFormOf(const std::string& word, const std::string& singular) {
          with_ending("person", "people") || with_ending("mouse", "mice");
 }
 
-// Whether the words begin with those of the label.
+// Whether the words begin with the words of the label.
 bool BeginsWith(std::span<const std::string> words, const std::vector<std::string>& label) {
   return !label.empty() && words.size() >= label.size() &&
          std::equal(label.begin(), label.end() - 1, words.begin()) &&

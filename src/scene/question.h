@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// The relations in questions: those of a scene, their inverses, and the distance.
+// The relations in questions: the relations of a scene, their inverses, and the distance.
 enum class AskedRelation {
   kOn,
   kUnder,  // the inverse of "on"

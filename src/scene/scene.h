@@ -16,7 +16,7 @@
 namespace hullslam {
 
 // The scene is the map as a person would describe it: things, and how they stand to each other
-// (docs/scene.md). Coordinates are those of the map, lengths are in its unit (m with depth).
+// (docs/scene.md). Coordinates are as in the map, lengths are in its unit (m with depth).
 
 // A box around an object, with the z axis of its frame upwards.
 struct UprightBox {

@@ -16,7 +16,7 @@ struct Candidate {
   Eigen::VectorXf coefficients = {};  // of the mask prototypes
 };
 
-// The candidates that a decoder gives: those of at least this score, of a class that is asked for.
+// The candidates that a decoder gives: they have at least this score and a class that is asked for.
 struct CandidateFilter {
   double min_score = 0.0;
   std::vector<bool> classes = {};  // by number

@@ -111,8 +111,8 @@ std::optional<size_t> TakeKey(std::string_view& text) {
   return TakeNumber(text);
 }
 
-// Throws unless the name may stand where it is. `place` begins the message, `earlier` has the
-// places of the names before.
+// Throws unless the name may stand where it is. `place` begins the message, `earlier` tells
+// where the names before are.
 void AddName(const std::string& place, const std::string& here, std::string name,
              std::map<std::string, std::string>& earlier, std::vector<std::string>& names) {
   const auto fail = [&](const std::string& fault) {

@@ -15,7 +15,7 @@ std::vector<Candidate> DecodeColumns(const NetworkLayout& layout,
                                      std::span<const NetworkOutput> outputs,
                                      const CandidateFilter& filter);
 
-// Decodes that of YOLOv5, 1 x anchors x (5 + classes + coefficients): the box as above, the score
+// Decodes YOLOv5's output, 1 x anchors x (5 + classes + coefficients): the box as above, the score
 // of an object, the scores of the classes, and the coefficients. A candidate has the product of
 // both scores.
 std::vector<Candidate> DecodeRows(const NetworkLayout& layout,

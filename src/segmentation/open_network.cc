@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "hullslam_network";
 
-// Finds the program in the installation that this code is in, in that of the configuration, or
+// Finds the program in the installation that this code is in, in the one of the configuration, or
 // where it was built.
 fs::path FindProgram() {
   std::vector<fs::path> files;

@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// Non-maximum suppression: keeps the candidates, best score first, whose box overlaps that of no
+// Non-maximum suppression: keeps the candidates, best score first, whose box overlaps the box of no
 // better one of the same class by more than kMostOverlap (intersection over union), and at most
 // kMostInstances of them. Ties go to the first.
 inline constexpr double kMostOverlap = 0.7;    // as networks of YOLO are evaluated

@@ -55,7 +55,7 @@ InfoCamera RawCameraOf(const fs::path& path, const IndexedTopic& topic) {
 }
 
 // The camera of rectified images: the left half of the projection P. Drivers of cameras that need
-// no rectification leave P empty; then K is that of the images.
+// no rectification leave P empty; then K belongs to the images.
 InfoCamera RectifiedCameraOf(const fs::path& path, const IndexedTopic& topic) {
   const CameraInfoMessage& info = *topic.camera;
   if (info.p[0] > 0.0) {

@@ -24,7 +24,7 @@ struct InfoCamera {
 InfoCamera CameraOfInfo(const std::filesystem::path& path, const IndexedTopic& info,
                         const IndexedTopic& images);
 
-// The pair of two CameraInfo. The projections are those of rectified images; the fourth column of
+// The pair of two CameraInfo. The projections are for rectified images; the fourth column of
 // the right one is minus the baseline times the focal length. Adds how they were read to `notes`.
 // Throws likewise.
 StereoCalibration PairOfInfos(const std::filesystem::path& path,

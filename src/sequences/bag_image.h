@@ -26,7 +26,7 @@ std::string ReadEncodings(BagImageKind kind);
 // read.
 uint16_t BrightestOf(const RawImageMessage& message);
 
-// The luma, CV_8UC1. For the same pixels it has the same values as that of a PNG. All functions
+// The luma, CV_8UC1. For the same pixels it has the same values as from a PNG. All functions
 // throw InputError that begins with `name` for an image of another kind, of a size that does not
 // fit its bytes or is too large, or that cannot be decoded. `brightest` is the largest value of all
 // images of the topic, if they have 16 bits: it tells how many of the bits the camera uses.

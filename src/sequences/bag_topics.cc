@@ -109,7 +109,7 @@ bool HasAny(std::string name, std::initializer_list<std::string_view> words) {
                      [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
 
-// The name without that of a compressed form: /camera/image of /camera/image/compressed.
+// The name without the part of a compressed form: /camera/image of /camera/image/compressed.
 std::string BaseName(const IndexedTopic& topic) {
   for (const std::string_view ending : {"/compressedDepth", "/compressed"}) {
     if (topic.is_compressed && topic.name.ends_with(ending)) {
@@ -139,8 +139,8 @@ Candidates PreferredByName(const Candidates& all, BagImageKind kind) {
   return kept;
 }
 
-// The topics of a kind. If there are none, those of grey images with 16 bits: for depth those whose
-// names have "depth", or else all; for colour those whose names do not have it.
+// The topics of a kind. If there are none, topics of grey images with 16 bits: for depth if their
+// names have "depth", or else all; for colour if their names do not have it.
 Candidates CandidatesOf(const BagIndex& index, BagImageKind kind) {
   Candidates sure;
   Candidates named_depth;
@@ -189,7 +189,7 @@ std::string ReplaceAll(std::string text, std::string_view from, std::string_view
   return text;
 }
 
-// The topic of the other camera; null if there is none. `side` is that of the given one.
+// The topic of the other camera; null if there is none. `side` is the side of the given one.
 const IndexedTopic* PartnerOf(const IndexedTopic& topic, size_t side, const Candidates& all) {
   for (const auto& words : kSides) {
     const std::string other = ReplaceAll(topic.name, words[side], words[1 - side]);

@@ -80,7 +80,7 @@ cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, c
 }
 
 // Whether these are the bytes of a PNG with 16 bits per channel. Its first chunk has them at a
-// fixed place.
+// fixed position.
 bool IsSixteenBitPng(std::string_view bytes) {
   constexpr size_t kBitsAt = 24;
   return bytes.starts_with(kPngSignature) && bytes.size() > kBitsAt && bytes[kBitsAt] == 16;

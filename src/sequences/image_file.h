@@ -43,7 +43,7 @@ cv::Mat ReadDepthImage(const std::filesystem::path& path);
 cv::Mat ReadLabelImage(const std::filesystem::path& path);
 
 // The same for the bytes of an image that is a part of a file, such as a message of a bag. `name`
-// takes the place of the file in messages.
+// stands for the file in messages.
 cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view bytes);
 cv::Mat DecodeColourImage(const std::filesystem::path& name, std::string_view bytes);
 cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view bytes);

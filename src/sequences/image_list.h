@@ -29,7 +29,7 @@ struct ListedFrames {
   std::vector<FramePaths> frames;
   size_t rows = 0;
   size_t repeated = 0;  // rows with the stamp of the row before
-  size_t earlier = 0;   // rows whose stamp is before that of an earlier row
+  size_t earlier = 0;   // rows whose stamp is before an earlier row's
   std::string fault;    // describes the first row that is not used
 };
 

@@ -10,10 +10,10 @@
 namespace hullslam {
 
 // Decodes a JPEG by libjpeg-turbo. Its end must be there; anything may follow it. Grey values are
-// the luma as stored, and all values are those of cv::imdecode. Throws DecodeError.
+// the luma as stored, and all values are as from cv::imdecode. Throws DecodeError.
 cv::Mat DecodeJpeg(std::string_view bytes, PixelForm form, const HeaderCheck& check);
 
-// The bytes of a JPEG with an image of 8 bits and 1 or 3 channels, blue first: those of
+// The bytes of a JPEG with an image of 8 bits and 1 or 3 channels, blue first, as from
 // cv::imencode. `quality` is from 0 to 100.
 std::string EncodeJpeg(const cv::Mat& image, int quality);
 

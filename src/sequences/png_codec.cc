@@ -138,7 +138,7 @@ class PngReader {
     reader.rest_.remove_prefix(count);
   }
 
-  // The weights of red and green are those of BT.601, as in all of OpenCV.
+  // The weights of red and green are from BT.601, as in all of OpenCV.
   void Transform(PixelForm form) {
     const int type = png_get_color_type(png_, info_);
     const bool has_colour = (type & PNG_COLOR_MASK_COLOR) != 0;

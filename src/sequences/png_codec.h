@@ -17,7 +17,7 @@ class DecodeError : public std::runtime_error {
 };
 
 // Decodes a PNG by libpng. All pixels must be there and all checksums must be right. Grey and
-// colour values are those of cv::imdecode. Throws DecodeError.
+// colour values are as from cv::imdecode. Throws DecodeError.
 cv::Mat DecodePng(std::string_view bytes, PixelForm form, const HeaderCheck& check);
 
 // The bytes of a PNG with an image of 8 or 16 bits and 1 or 3 channels, blue first. They are those

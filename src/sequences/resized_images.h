@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// Resizes all images of the sequence, which have this size, to that of the camera with which they
+// Resizes all images of the sequence, which have this size, to the camera's size when they
 // are loaded, and masks with them. Depth images take the nearest pixel, since a mean of foreground
 // and background is the depth of neither. The size is kept among the sequence's choices, so that
 // OpenRunSequence() resizes them too.

@@ -9,7 +9,7 @@
 namespace hullslam {
 
 // Reads the images, and the right images if there are some, from their files. Without depth images,
-// those of 16 bits are images too.
+// images of 16 bits are images too.
 void LoadWithoutDepth(ImageSequence& sequence);
 
 // The images of the frames show both halves of a pair, the left one first.

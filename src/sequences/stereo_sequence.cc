@@ -258,7 +258,7 @@ void FinishKitti(const fs::path& folder, const FrameSelection& selection, ImageS
 
 // ---- folders
 
-// What a name shares with that of its partner: the whole name, or only its last number where the
+// What a name shares with its partner's name: the whole name, or only its last number where the
 // names also tell the side ("left_000010" and "right_000010").
 enum class SharedPart { kName, kNumber };
 

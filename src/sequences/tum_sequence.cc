@@ -66,7 +66,7 @@ struct ImageList {
   std::string source;  // for messages
   bool is_listed = true;
   bool are_numbered = false;
-  std::string data_set = {};  // if its name is known by those of the images
+  std::string data_set = {};  // if its name is known by the images' names
 };
 
 // From NAME.txt or, if the sequence has no lists, from the names of the images in the folder NAME.

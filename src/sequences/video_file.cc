@@ -35,8 +35,8 @@ struct Turn {
 };
 
 // A stored pixel (x, y) is shown at (a x + c y, b x + d y); the matrix has a and b, then c and d at
-// its fourth place, as 16.16 numbers (ISO 14496-12, 8.3.2). Cameras only write turns by right
-// angles and reflections; of any other matrix the nearest of those is taken.
+// its fourth number, as 16.16 numbers (ISO 14496-12, 8.3.2). Cameras only write turns by right
+// angles and reflections; for any other matrix the nearest turn is taken.
 Turn TurnOf(const AVStream& stream) {
   size_t size = 0;
   const uint8_t* const data =
@@ -134,7 +134,7 @@ class VideoFile::Decoder {
 
   bool HasOwnStamp() const { return frame_->pts != AV_NOPTS_VALUE; }
 
-  // The time between two frames, s. AVI stores a constant one in place of stamps, so the decoder
+  // The time between two frames, s. AVI stores a constant one instead of stamps, so the decoder
   // has none for the frames that come after the end of the file. Not a number if it is not known.
   double Interval() const {
     const AVRational rate = Stream().avg_frame_rate;

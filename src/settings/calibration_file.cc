@@ -31,7 +31,7 @@ const char* KeyOf(const YamlMap& map, const std::array<const char*, kCount>& nam
   return names.front();
 }
 
-// The first names are those of OpenCV's own programs and of ROS, the others those of scripts.
+// The first names are used by OpenCV's own programs and ROS, the others by scripts.
 constexpr std::array kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "mtx", "K"};
 constexpr std::array kDistortionKeys = {"distortion_coefficients", "Distortion_Coefficients",
                                         "distCoeffs", "dist", "D"};

@@ -18,7 +18,7 @@ struct RecognisedCalibration {
 };
 
 // Reads a calibration of OpenCV (camera_matrix, distortion_coefficients), ROS (camera_info yaml),
-// Kalibr (camchain.yaml; also that of TUM-VI; its first camera), EuRoC and TUM-VI (sensor.yaml),
+// Kalibr (camchain.yaml; also of TUM-VI; its first camera), EuRoC and TUM-VI (sensor.yaml),
 // stella_vslam (Camera.model, flat or as a map), camodocal (model_type) or Basalt (JSON). Nothing
 // for a file with other keys, such as a settings file. Throws InputError with file, line and key
 // for a file that is one of these but does not describe a camera that HullSLAM has. `root` is what

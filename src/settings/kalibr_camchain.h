@@ -16,7 +16,7 @@ namespace hullslam {
 
 bool IsCamchain(const YamlMap& file);
 
-// cam0 and cam1. Their poses are T_cn_cnm1 of cam1, the frame of cam0 in that of cam1, or T_cam_imu
+// cam0 and cam1. Their poses are T_cn_cnm1 of cam1, from cam0 to cam1, or T_cam_imu
 // of both.
 StereoCalibration ReadCamchainPair(const YamlMap& file);
 

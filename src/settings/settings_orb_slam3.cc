@@ -63,7 +63,7 @@ constexpr std::array<Entry, 31> kEntries = {{
     {"Camera1.overlappingEnd", Kind::kIgnored},
     {"Camera2.overlappingBegin", Kind::kIgnored},
     {"Camera2.overlappingEnd", Kind::kIgnored},
-    // Keys of its files before format 1.0. The lens is that of Camera.type.
+    // Keys of its files before format 1.0. Camera.type tells the lens.
     {"Camera.bFishEye", Kind::kIgnored},
     {"Camera.lappingBegin", Kind::kIgnored},
     {"Camera.lappingEnd", Kind::kIgnored},

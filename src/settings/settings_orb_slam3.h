@@ -8,7 +8,7 @@
 namespace hullslam {
 
 // Settings files of ORB-SLAM3 (Campos et al., "ORB-SLAM3", IEEE Transactions on Robotics 37(6),
-// 2021). The keys are those of its format 1.0 and of the files before it, as the settings files of
+// 2021). The keys are from its format 1.0 and from the files before it, as the settings files of
 // its public examples and its calibration tutorial show them.
 
 // Replaces ORB-SLAM3's keys by ours. Settings without a meaning here (viewer, IMU) are dropped;

@@ -81,7 +81,7 @@ StereoCalibration PairOfOrb2(const YamlMap& file) {
 constexpr const char* kRectification = "rectification_matrix";
 constexpr const char* kProjection = "projection_matrix";
 
-// The file of the right camera, whose name has "right" where that of the left one has "left"; empty
+// The file of the right camera, whose name has "right" where the left one's has "left"; empty
 // if it has not.
 fs::path RightOf(const fs::path& left) {
   std::string name = left.filename().string();

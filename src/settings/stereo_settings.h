@@ -20,8 +20,8 @@ bool IsStereoKey(std::string_view key);
 // - of ORB-SLAM3: Camera2.fx and so on beside `camera`, the left one, with Stereo.T_c1_c2, the pose
 //   of the second camera in the first one (Tlr, 3x4, in files before format 1.0);
 // - of Kalibr: cam0 and cam1 of a camchain; of Basalt: its first two cameras;
-// - of ROS: the camera_info of the left camera, beside which there is that of the right one, whose
-//   name has "right" in place of "left".
+// - of ROS: the camera_info of the left camera, beside which there is the right one's, whose
+//   name has "right" instead of "left".
 // A file with one camera, `camera`, and Camera.bf describes rectified images, for which the pair is
 // absent, or two equal lenses that look in the same direction. Throws InputError with file, line
 // and key.

@@ -13,7 +13,7 @@ void ReadLens(const YamlMap& map, const char* model_key, const char* coefficient
               PinholeCamera& camera);
 
 // The camera of a file of Kalibr, EuRoC or TUM-VI: camera_model, intrinsics (fu fv cu cv),
-// resolution, distortion_model and the coefficients. Those of `ds` and `eucm` come first in the
+// resolution, distortion_model and the coefficients. `ds` and `eucm` have them first in the
 // intrinsics. Throws likewise.
 PinholeCamera ReadPinhole(const YamlMap& map, const char* coefficients_key);
 

@@ -29,7 +29,7 @@ std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFra
   return std::nullopt;
 }
 
-// The keyframes of the main island. Those of late masks have larger ids than keyframes of later
+// The keyframes of the main island. Keyframes of late masks have larger ids than keyframes of later
 // frames.
 std::map<FrameId, const Keyframe*> KeyframesByFrame(const Map& map) {
   std::map<FrameId, const Keyframe*> keyframes;

@@ -19,7 +19,7 @@
 namespace hullslam {
 
 // Finishes the map once the last keyframes and loops are in it. A map of earlier sessions to which
-// no keyframe was added is not changed. `cancellation` (may be null) and `on_progress` are those of
+// no keyframe was added is not changed. `cancellation` (may be null) and `on_progress` are for
 // the adjustment of the whole map.
 void FinishMap(Mapper& mapper, const Cancellation* cancellation = nullptr,
                const ProgressCallback& on_progress = {});

@@ -255,7 +255,7 @@ bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
 }
 
 // The revision of the oldest map whose ids are still kept here. Frames are kept in order, so it is
-// that of the first one of each kind.
+// the revision of the first one of each kind.
 uint32_t System::OldestRevision() const {
   uint32_t oldest = UINT32_MAX;
   if (!remembered_.empty()) {

@@ -85,7 +85,7 @@ class ThreadedPipeline final : public Pipeline {
       if (is_initial || pace_ == Pace::kWaitForMapper) {
         PostAndWait(std::move(*result.message));
         if (is_initial) {
-          WaitForMapper();  // the published map may also be that of a loop correction
+          WaitForMapper();  // the published map may also come from a loop correction
         }
       } else {
         Post(std::move(*result.message));

@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// The text with small letters in place of A to Z. The locale does not matter, and the bytes of
+// The text with small letters instead of A to Z. The locale does not matter, and the bytes of
 // other letters stay.
 inline std::string LowerCase(std::string_view text) {
   std::string lower(text);

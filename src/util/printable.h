@@ -6,8 +6,8 @@
 
 namespace hullslam {
 
-// The text in valid UTF-8 and without characters that control a terminal or a text file: '?' takes
-// the place of control characters, of characters that change the direction of writing or end a
+// The text in valid UTF-8 and without characters that control a terminal or a text file: '?' stands
+// for control characters, of characters that change the direction of writing or end a
 // line, and of bytes that are not UTF-8. The characters in `kept`, such as "\n", stay as they are.
 std::string Printable(std::string_view text, std::string_view kept = {});
 

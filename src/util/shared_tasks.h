@@ -15,7 +15,7 @@ class SharedTasks {
   // `task` must outlive this object.
   SharedTasks(size_t count, const std::function<void(size_t)>& task) : count_(count), task_(task) {}
 
-  // Returns when all tasks have begun and those of this thread have ended. After a task has thrown
+  // Returns when all tasks have begun and this thread's tasks have ended. After a task has thrown
   // an exception, no further task is begun.
   void Work() {
     for (size_t i = next_++; i < count_; i = next_++) {

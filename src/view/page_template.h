@@ -6,7 +6,7 @@
 namespace hullslam {
 
 // The page of the report and of the live view as one HTML file, made by scripts/assemble_page.py.
-// The place of its data is marked by @DATA@, which occurs once. Without data, the page is empty
+// The position of its data is marked by @DATA@, which occurs once. Without data, the page is empty
 // until a message is given to it.
 std::string_view PageTemplate();
 

@@ -18,7 +18,7 @@ struct Report {
 };
 
 // The report of a run whose results are in the folder. The map and the sequence add what the files
-// do not have. Throws InputError if the files are not those of a run.
+// do not have. Throws InputError if the files are not from a run.
 Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
                   const ImageSequence& sequence);
 // The report of a finished run, of which only the files are left.

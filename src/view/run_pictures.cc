@@ -148,7 +148,7 @@ void AddCutoutTasks(ViewObject& shown, const PinholeCamera& camera, std::vector<
   }
 }
 
-// The stamps of the pictures: those of keyframes.
+// The stamps of the pictures, which are stamps of keyframes.
 std::vector<double> PictureStamps(const ViewModel& model, size_t most) {
   std::vector<double> stamps;
   for (const StampedPose& pose : model.keyframes.poses) {

@@ -52,7 +52,7 @@ struct ViewPicture {
   std::string jpeg;
   int width = 0;  // px
   int height = 0;
-  std::vector<ViewShape> outlines;  // those of the masks
+  std::vector<ViewShape> outlines;  // of the masks
   std::vector<ViewShape> ellipses;  // the projected ellipsoids
 };
 
