@@ -172,7 +172,7 @@ class Segmenter:
         """min_score: least score of an instance. classes: only these; empty for all.
         names: a file with the name of one class per line, or None for those in the file
         of the network. size: longer side of the image that the network sees, px; 0 for
-        that of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a
+        the one of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a
         network that finds no masks. Raises InputError for a file that is no such network.
         """
     def segment(self, image: _Image) -> Masks:
@@ -288,7 +288,7 @@ class MapObject:
         """Whether the shape fits all its views. If not, the object is a candidate."""
     @property
     def world_from_object(self) -> _Doubles:
-        """(4, 4) pose: the origin is the centre and the axes are those of the ellipsoid. NaN if
+        """(4, 4) pose: the origin is the centre and the axes are the ellipsoid's. NaN if
         the shape is not known.
         """
     @property
@@ -449,13 +449,13 @@ class System:
         masks: Masks of the objects in the image, or None.
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
         masks_right: Masks of the objects in the right image, or None.
-        timestamp: s, larger than that of the frame before.
+        timestamp: s, larger than in the frame before.
         Raises InputError for anything else, also for pairs that are swapped, the same or not
         rectified, and for float32 depth that cannot be metres; a refused frame changes
         nothing. Warns of input that can be used but hardly is what was meant.
         """
     def await_masks(self, is_on: bool) -> None:
-        """From now on, frames that are tracked without masks await those of add_masks(): a
+        """From now on, frames that are tracked without masks await masks by add_masks(): a
         keyframe of such a frame says nothing about objects until then. reset() switches
         this off.
         """
@@ -545,7 +545,7 @@ def evaluate_trajectory(groundtruth: Trajectory | _Path, estimate: Trajectory | 
     groundtruth, estimate: Trajectory, or path of a file in TUM's format.
     align: 'se3', 'sim3' (monocular) or 'none'.
     pairing: 'tum' or 'evo', the rule by which poses are paired by time.
-    max_difference: largest difference of paired time stamps, s; None: that of the
+    max_difference: largest difference of paired time stamps, s; None: by the
     rule, 0.02 or 0.01.
     Raises InputError if there are fewer than three pairs.
     """
@@ -573,7 +573,7 @@ def open_icl(folder: _Path, settings: SettingsTable, *, depth: bool = True) -> I
     depth: False for a monocular run, whose frames have no depth.
     """
 def open_euroc(folder: _Path, settings: SettingsTable) -> ImageSequence:
-    """Opens the left camera of a sequence of EuRoC. Its settings are those of
+    """Opens the left camera of a sequence of EuRoC. Its settings are from
     Settings(folder / 'mav0/cam0/sensor.yaml').
     """
 def open_run(folder: _Path) -> Run:

@@ -204,7 +204,7 @@ void BindObject(py::module_& module) {
           [](const MapObject& o) {
             return IfShaped(o, ToArray(o.object.ellipsoid.world_from_object));
           },
-          "(4, 4) pose: the origin is the centre and the axes are those of the ellipsoid. NaN if\n"
+          "(4, 4) pose: the origin is the centre and the axes are the ellipsoid's. NaN if\n"
           "the shape is not known.")
       .def_property_readonly(
           "half_axes",

@@ -66,7 +66,7 @@ void BindSegmenter(py::module_& module) {
            "min_score: least score of an instance. classes: only these; empty for all.\n"
            "names: a file with the name of one class per line, or None for those in the file\n"
            "of the network. size: longer side of the image that the network sees, px; 0 for\n"
-           "that of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a\n"
+           "the one of its input. threads: of OpenCV; 0 leaves them as they are. boxes: accept a\n"
            "network that finds no masks. Raises InputError for a file that is no such network.")
       .def("segment", &SharedSegmenter::Segment, py::arg("image"),
            "The masks of an image, best score first. image: uint8, (height, width) or\n"

@@ -291,7 +291,7 @@ void BindSequences(py::module_& module) {
              "Opens a sequence of ICL-NUIM, with the settings of config/ICL.yaml.\n\n"
              "depth: False for a monocular run, whose frames have no depth.");
   module.def("open_euroc", &OpenEuroc, py::arg("folder"), py::arg("settings"),
-             "Opens the left camera of a sequence of EuRoC. Its settings are those of\n"
+             "Opens the left camera of a sequence of EuRoC. Its settings are from\n"
              "Settings(folder / 'mav0/cam0/sensor.yaml').");
   module.def(
       "open_stored_images", &OpenStored, py::arg("path"),

@@ -252,7 +252,7 @@ void BindSystem(py::module_& module) {
            "masks: Masks of the objects in the image, or None.\n"
            "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
            "masks_right: Masks of the objects in the right image, or None.\n"
-           "timestamp: s, larger than that of the frame before.\n"
+           "timestamp: s, larger than in the frame before.\n"
            "Raises InputError for anything else, also for pairs that are swapped, the same or not\n"
            "rectified, and for float32 depth that cannot be metres; a refused frame changes\n"
            "nothing. Warns of input that can be used but hardly is what was meant.")
@@ -260,7 +260,7 @@ void BindSystem(py::module_& module) {
           "await_masks",
           [](LiveSystem& s, bool is_on) { WithoutGil([&] { s.AwaitMasks(is_on); }); },
           py::arg("is_on"),
-          "From now on, frames that are tracked without masks await those of add_masks(): a\n"
+          "From now on, frames that are tracked without masks await masks by add_masks(): a\n"
           "keyframe of such a frame says nothing about objects until then. reset() switches\n"
           "this off.")
       .def("add_masks", &AddMasks, py::arg("frame"), py::arg("masks"),

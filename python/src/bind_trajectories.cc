@@ -157,7 +157,7 @@ void BindErrors(py::module_& module) {
              "groundtruth, estimate: Trajectory, or path of a file in TUM's format.\n"
              "align: 'se3', 'sim3' (monocular) or 'none'.\n"
              "pairing: 'tum' or 'evo', the rule by which poses are paired by time.\n"
-             "max_difference: largest difference of paired time stamps, s; None: that of the\n"
+             "max_difference: largest difference of paired time stamps, s; None: by the\n"
              "rule, 0.02 or 0.01.\n"
              "Raises InputError if there are fewer than three pairs.");
 }
