@@ -114,7 +114,7 @@ def test_a_sequence_is_read_frame_by_frame(desk, tmp_path):
     assert stored.names[0] == stored.files[0].stem == sequence[0].name and len(stored) == 25
     colour = stored.colour(-1)
     assert colour.shape == (height, width, 3) and colour.dtype == np.uint8
-    assert abs(colour.astype(float) @ [0.114, 0.587, 0.299] - frame.image).max() < 1.0
+    assert abs(colour.astype(float) @ [0.114, 0.587, 0.299] - frame.image).max() < 1.1  # libpng cuts off
     settings.Camera.width = 100
     with pytest.raises(hullslam.InputError, match="expected Camera.width"):
         _ = hullslam.open_tum(desk, settings)[0]
