@@ -74,12 +74,12 @@ WORDS = (
 
 # These numbers may only become smaller. The goals of ALL_FILES and SCRIPTS are 900 and 6500.
 MOST_FILES, MOST_LINES, ALL_FILES, SCRIPTS = 40, 900, 1067, 8230
-FOLDERS = {"src/frame": 59, "src/run": 53, "src/objects": 51, "src/tracking": 50, "src/sequences": 46,
+FOLDERS = {"src/frame": 59, "src/objects": 51, "src/tracking": 50, "src/sequences": 46,
            "src/masks": 41, "src/optim": 41}
 CORE = {module for module, level in LEVELS.items() if level <= LEVELS["system"]} - {"files", "bags"}
 PARTS = {  # name: (modules, lines of src; the goals are 35000 and 4500)
-    "core": (CORE, 37300),
-    "run": (PROGRAM_SIDE, 7300),
+    "core": (CORE, 37212),
+    "run": (PROGRAM_SIDE, 4850),
 }
 
 KEPT_PRIVATE = re.compile(

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "arrays.h"
-#include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/results/trajectory_file.h"
 #include "module.h"
@@ -18,12 +17,6 @@
 
 namespace hullslam::python {
 namespace {
-
-struct TrajectoryErrors {
-  AteResult ate;
-  RpeResult rpe;
-  std::string alignment;
-};
 
 PoseList FromArrays(const py::object& timestamps, const py::object& world_from_cam) {
   const py::array_t<double> stamps = ToNumbers(timestamps, "timestamps", 1);
@@ -96,14 +89,10 @@ TrajectoryErrors Evaluate(const py::object& groundtruth, const py::object& estim
   const Trajectory reference = ToTrajectory(groundtruth);
   const Trajectory estimated = ToTrajectory(estimate);
   return WithoutGil([&] {
-    TrajectoryErrors errors{EvaluateAte(reference, estimated, options), {}, align};
+    TrajectoryErrors errors = EvaluateTrajectory(reference, estimated, options);
     if (!errors.ate.ok()) {
       throw InputError(errors.ate.failure);
     }
-    errors.rpe = EvaluateRpe(reference, estimated,
-                             {.scale = errors.ate.reference_from_estimate.scale,
-                              .pairing = options.pairing,
-                              .max_difference = options.max_difference});
     return errors;
   });
 }
@@ -137,7 +126,9 @@ void BindErrors(py::module_& module) {
       .def_property_readonly(
           "coverage", [](const Errors& e) { return e.ate.coverage; },
           "Share of the estimated poses that are paired, 0 to 1.")
-      .def_readonly("alignment", &Errors::alignment, "'se3', 'sim3' or 'none'.")
+      .def_property_readonly(
+          "alignment", [](const Errors& e) { return ToString(e.options.alignment); },
+          "'se3', 'sim3' or 'none'.")
       .def_property_readonly(
           "scale", [](const Errors& e) { return e.ate.reference_from_estimate.scale; },
           "Metres per unit of length of the estimate; 1 without 'sim3'.")
@@ -147,7 +138,8 @@ void BindErrors(py::module_& module) {
           "(4, 4) rigid motion of the estimate after its positions were multiplied by `scale`.")
       .def("__repr__", [](const Errors& e) {
         return "<hullslam.TrajectoryErrors: ATE RMSE " + fmt::format("{:f}", e.ate.errors.rmse) +
-               " m, " + std::to_string(e.ate.pairs) + " pairs, " + e.alignment + ">";
+               " m, " + std::to_string(e.ate.pairs) + " pairs, " + ToString(e.options.alignment) +
+               ">";
       });
   module.def("evaluate_trajectory", &Evaluate, py::arg("groundtruth"), py::arg("estimate"),
              py::kw_only(), py::arg("align") = "se3", py::arg("pairing") = "tum",

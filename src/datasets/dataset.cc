@@ -75,6 +75,12 @@ void CheckPairs(const fs::path& path, const ImageSequence& sequence, const Pinho
   }
 }
 
+const DatasetOption* FindOption(std::span<const DatasetOption> options, std::string_view key) {
+  const auto found =
+      std::ranges::find_if(options, [&](const DatasetOption& option) { return option.key == key; });
+  return found != options.end() ? &*found : nullptr;
+}
+
 }  // namespace
 
 std::span<const Dataset> Datasets() {
@@ -83,6 +89,20 @@ std::span<const Dataset> Datasets() {
       EurocStereoDataset(), KittiLeftDataset(),    KittiDataset(),    IclDataset(),
       TumDataset(),         StereoFolderDataset(), VideoDataset()};
   return kDatasets;
+}
+
+std::vector<DatasetOption> AllDatasetOptions() {
+  std::vector<DatasetOption> all;
+  for (const Dataset& dataset : Datasets()) {
+    for (const DatasetOption& option : dataset.options) {
+      if (std::ranges::none_of(all, [&](const DatasetOption& other) {
+            return std::string_view(other.name) == option.name;
+          })) {
+        all.push_back(option);
+      }
+    }
+  }
+  return all;
 }
 
 const Dataset& DatasetOfProgram(std::string_view program, SensorKind sensor) {
@@ -103,6 +123,13 @@ const char* ToString(SensorKind sensor) {
     default:
       return "monocular";
   }
+}
+
+std::string ProgramOf(const Dataset& dataset, SensorKind sensor) {
+  const char* const prefix = sensor == SensorKind::kRgbd     ? "rgbd"
+                             : sensor == SensorKind::kStereo ? "stereo"
+                                                             : "mono";
+  return fmt::format("{}_{}", prefix, dataset.program);
 }
 
 FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor) {
@@ -127,6 +154,23 @@ FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor)
   found.note =
       fmt::format("{}: {}, {}{}", path.string(), found.dataset->meaning, ToString(found.sensor),
                   sensor ? std::string() : DescribeOthers(path, found.sensor));
+  return found;
+}
+
+FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor,
+                         const DatasetChoices& choices) {
+  if (!sensor && choices.contains("side_by_side")) {
+    sensor = SensorKind::kStereo;
+  }
+  FoundDataset found = FindDataset(path, sensor);
+  for (const auto& [key, value] : choices) {
+    if (FindOption(found.dataset->options, key) == nullptr) {
+      const std::vector<DatasetOption> all = AllDatasetOptions();
+      throw InputError(fmt::format("--{} is given, but {} is {}, which has no such choice",
+                                   FindOption(all, key)->name, path.string(),
+                                   found.dataset->meaning));
+    }
+  }
   return found;
 }
 
@@ -164,6 +208,25 @@ ImageSequence OpenImages(const fs::path& path, const DatasetChoices& choices) {
     }
   }
   return VideoDataset().open_images({.path = path, .choices = choices});
+}
+
+void UseGivenGroundtruth(const fs::path& file, const std::string& expected,
+                         ImageSequence& sequence) {
+  sequence.groundtruth.reset();
+  sequence.converted_groundtruth.reset();
+  if (file == "none") {
+    return;
+  }
+  sequence.groundtruth = file;
+  const Trajectory truth = ReadGroundtruth(sequence).value();
+  const double first = sequence.frames.front().timestamp;
+  const double last = sequence.frames.back().timestamp;
+  if (truth.back().timestamp < first || truth.front().timestamp > last) {
+    throw InputError(fmt::format(
+        "{}: has poses from {:.6f} to {:.6f} s, but the images are from {:.6f} to "
+        "{:.6f} s; expected {}",
+        file.string(), truth.front().timestamp, truth.back().timestamp, first, last, expected));
+  }
 }
 
 }  // namespace hullslam

@@ -190,4 +190,8 @@ const char* ToString(AlignmentKind kind) {
   return "unknown";
 }
 
+AlignmentKind AlignmentOf(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+}
+
 }  // namespace hullslam

@@ -91,4 +91,24 @@ std::string DescribeSwappedRotations(const Trajectory& reference, const Trajecto
       report.rotation.median, median);
 }
 
+TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
+                                    const AteOptions& options) {
+  TrajectoryErrors errors{.options = options, .ate = EvaluateAte(reference, estimate, options)};
+  if (!errors.ate.ok()) {
+    return errors;
+  }
+  const RpeOptions motions = {.scale = errors.ate.reference_from_estimate.scale,
+                              .pairing = options.pairing,
+                              .max_difference = options.max_difference};
+  errors.rpe = EvaluateRpe(reference, estimate, motions);
+  for (const std::string& warning :
+       {DescribeMissingPairs(errors.ate),
+        DescribeSwappedRotations(reference, estimate, errors.rpe, motions)}) {
+    if (!warning.empty()) {
+      errors.warnings.push_back(warning);
+    }
+  }
+  return errors;
+}
+
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eval/truth_evaluation.h"
 
+#include <cmath>
 #include <utility>
 
 namespace hullslam {
@@ -21,6 +22,20 @@ double MeanDistance(const ObjectResults& report, double scale) {
     }
   }
   return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
+}
+
+std::vector<SeenBox> BoxesOf(const std::vector<InstanceMask>& masks, const PinholeCamera& camera) {
+  std::vector<SeenBox> boxes;
+  for (const InstanceMask& mask : masks) {
+    SeenBox seen{mask.label, {}};
+    for (const std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+      for (const Eigen::Vector2d& point : outline) {
+        seen.box.extend(camera.Undistort(point));
+      }
+    }
+    boxes.push_back(seen);
+  }
+  return boxes;
 }
 
 }  // namespace
@@ -58,6 +73,27 @@ TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
   evaluation.ate_rmse_m = poses.ate.errors.rmse;
   evaluation.min_masks = min_masks;
   return evaluation;
+}
+
+std::vector<size_t> CountAllSightings(
+    const std::vector<TrueObject>& truths, const PinholeCamera& camera,
+    const Trajectory& groundtruth, const Trajectory& run, std::span<const double> stamps,
+    const std::function<std::vector<InstanceMask>(size_t frame)>& read) {
+  std::vector<double> true_stamps;
+  for (const StampedPose& pose : groundtruth) {
+    true_stamps.push_back(pose.timestamp);
+  }
+  std::vector<size_t> sightings(truths.size(), 0);
+  for (size_t i = 0; i < stamps.size(); ++i) {
+    const size_t nearest = NearestStamp(true_stamps, stamps[i]);
+    const bool during = stamps[i] >= run.front().timestamp && stamps[i] <= run.back().timestamp;
+    if (during &&
+        std::abs(true_stamps[nearest] - stamps[i]) <= DefaultMaxDifference(PairingRule::kTum)) {
+      CountSightings(truths, camera, Inverse(groundtruth[nearest].world_from_cam),
+                     BoxesOf(read(i), camera), sightings);
+    }
+  }
+  return sightings;
 }
 
 }  // namespace hullslam

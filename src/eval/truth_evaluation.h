@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "eval/change_groundtruth.h"
 #include "eval/object_groundtruth.h"
 #include "hullslam/eval/ate.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 
@@ -45,5 +48,12 @@ Sim3 AlignWorlds(const AlignedPoses& poses, const ObjectResults& report);
 TruthEvaluation EvaluateTruth(const TrueScene& scene, const AlignedPoses& poses,
                               const ObjectResults& report, std::vector<size_t> sightings,
                               size_t min_masks);
+
+// For each true object, the number of masks that show it in the frames of a run. `stamps` are those
+// of the frames of the sequence, s, and `read` gives the masks of one of them.
+std::vector<size_t> CountAllSightings(
+    const std::vector<TrueObject>& truths, const PinholeCamera& camera,
+    const Trajectory& groundtruth, const Trajectory& run, std::span<const double> stamps,
+    const std::function<std::vector<InstanceMask>(size_t frame)>& read);
 
 }  // namespace hullslam

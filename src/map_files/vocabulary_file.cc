@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 #include "files/atomic_file.h"
 #include "files/data_path.h"
 #include "files/read_file.h"
+#include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "map_files/vocabulary_text.h"
 
@@ -54,6 +56,25 @@ Vocabulary ReadVocabulary(const fs::path& path, const ProgressCallback& on_progr
                      "format of DBoW2");
   }
   return ParseVocabularyText(text, path, on_progress);
+}
+
+bool IsVocabularyFile(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    return false;
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(200, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<size_t>(file.gcount()));
+  if (Vocabulary::IsBinary(std::as_bytes(std::span(begin)))) {
+    return true;
+  }
+  // The text form begins with four whole numbers: branching, levels, score and weight.
+  const std::string line = begin.substr(0, begin.find_first_of("\r\n"));
+  Eigen::Vector4d numbers;
+  return line.find_first_not_of("0123456789 \t") == std::string::npos &&
+         ParseFinites(line, numbers);
 }
 
 void WriteVocabulary(const fs::path& path, const Vocabulary& vocabulary, VocabularyForm form) {

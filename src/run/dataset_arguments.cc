@@ -2,6 +2,7 @@
 #include "run/dataset_arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,7 +11,6 @@
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "run/load_settings.h"
 #include "run/messages.h"
 
 namespace hullslam {
@@ -23,28 +23,28 @@ bool IsNumber(const DatasetOption& option) {
   return type == "N" || type == "DEGREES" || type == "SECONDS";
 }
 
-// The options of all data sets, each once.
-std::vector<DatasetOption> AllOptions() {
-  std::vector<DatasetOption> all;
-  for (const Dataset& dataset : Datasets()) {
-    for (const DatasetOption& option : dataset.options) {
-      if (std::ranges::none_of(all, [&](const DatasetOption& other) {
-            return std::string_view(other.name) == option.name;
-          })) {
-        all.push_back(option);
-      }
-    }
+// The names of the presets for --help. Help must also work without the folder of presets.
+std::string ListPresets() {
+  try {
+    return fmt::format("{}", fmt::join(PresetNames(), ", "));
+  } catch (const InputError&) {
+    return "a name of config/presets";
   }
-  return all;
-}
-
-const DatasetOption* FindOption(std::span<const DatasetOption> options, std::string_view key) {
-  const auto found =
-      std::ranges::find_if(options, [&](const DatasetOption& option) { return option.key == key; });
-  return found != options.end() ? &*found : nullptr;
 }
 
 }  // namespace
+
+void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings) {
+  app.add_option("--settings", settings, "settings file (" + rule + ")");
+}
+
+void AddPresetArgument(CLI::App& app, std::string& preset) {
+  app.add_option("--preset", preset,
+                 "work as a published system does: " + ListPresets() +
+                     "; or a FILE that ends in .yaml. The settings file and --set replace its "
+                     "settings")
+      ->type_name("NAME|FILE");
+}
 
 void AddDatasetOptions(CLI::App& app, std::span<const DatasetOption> options,
                        DatasetChoices& choices) {
@@ -76,11 +76,11 @@ void AddAnyDatasetOptions(CLI::App& app, AnyDatasetArguments& arguments) {
             " (default: depth images if there are some, else a pair, else one "
             "camera)");
   }
-  AddDatasetOptions(app, AllOptions(), arguments.choices);
+  AddDatasetOptions(app, AllDatasetOptions(), arguments.choices);
 }
 
 std::vector<DatasetOption> OptionsOfImages() {
-  std::vector<DatasetOption> options = AllOptions();
+  std::vector<DatasetOption> options = AllDatasetOptions();
   std::erase_if(options, [](const DatasetOption& option) {
     const std::string_view key = option.key;
     return key != "image_topic" && key != "times" && key != "side_by_side";
@@ -97,27 +97,9 @@ DatasetHelp HelpOfAnyDataset() {
           .groundtruth = "default: that of the sequence"};
 }
 
-FoundDataset FindGivenDataset(const std::filesystem::path& path,
-                              const AnyDatasetArguments& arguments) {
-  std::optional<SensorKind> sensor = arguments.sensor;
-  if (!sensor && arguments.choices.contains("side_by_side")) {
-    sensor = SensorKind::kStereo;
-  }
-  FoundDataset found = FindDataset(path, sensor);
-  for (const auto& [key, value] : arguments.choices) {
-    if (FindOption(found.dataset->options, key) == nullptr) {
-      const std::vector<DatasetOption> all = AllOptions();
-      throw InputError(fmt::format("--{} is given, but {} is {}, which has no such choice",
-                                   FindOption(all, key)->name, path.string(),
-                                   found.dataset->meaning));
-    }
-  }
-  return found;
-}
-
 OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& request) {
   OpenedDataset opened = OpenDataset(dataset, request);
-  PrintSettingsWarnings(opened.settings);
+  PrintWarnings(opened.settings.notes.warnings);
   return opened;
 }
 
@@ -126,17 +108,24 @@ OpenedDataset OpenAnyDataset(const AnyDatasetArguments& arguments, DatasetReques
   if (!given.sensor && !request.associations.empty()) {
     given.sensor = SensorKind::kRgbd;
   }
-  const FoundDataset found = FindGivenDataset(request.path, given);
+  const FoundDataset found = FindDataset(request.path, given.sensor, given.choices);
   request.sensor = found.sensor;
   request.choices = given.choices;
   return OpenDatasetLoudly(*found.dataset, request);
 }
 
-std::string ProgramOf(const Dataset& dataset, SensorKind sensor) {
-  const char* const prefix = sensor == SensorKind::kRgbd     ? "rgbd"
-                             : sensor == SensorKind::kStereo ? "stereo"
-                                                             : "mono";
-  return fmt::format("{}_{}", prefix, dataset.program);
+std::optional<Trajectory> FindGroundtruth(const ImageSequence& sequence) {
+  try {
+    std::vector<std::string> notes;
+    std::optional<Trajectory> truth = ReadGroundtruth(sequence, &notes);
+    for (const std::string& note : notes) {
+      PrintError("warning: ground truth: {}\n", note);
+    }
+    return truth;
+  } catch (const InputError& error) {
+    PrintError("warning: {}; the run goes on without ground truth\n", error.what());
+    return std::nullopt;
+  }
 }
 
 }  // namespace hullslam

@@ -15,6 +15,11 @@ class App;
 
 namespace hullslam {
 
+// Adds --settings. `rule` is its default in words.
+void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings);
+// Adds --preset.
+void AddPresetArgument(CLI::App& app, std::string& preset);
+
 // Adds the options of a data set, whose values become choices. `choices` must outlive the app.
 void AddDatasetOptions(CLI::App& app, std::span<const DatasetOption> options,
                        DatasetChoices& choices);
@@ -34,10 +39,6 @@ std::vector<DatasetOption> OptionsOfImages();
 // The help of SEQUENCE and of --settings for such a program.
 DatasetHelp HelpOfAnyDataset();
 
-// The data set at a path. Throws InputError for choices that it does not have.
-FoundDataset FindGivenDataset(const std::filesystem::path& path,
-                              const AnyDatasetArguments& arguments);
-
 // Opens a data set, and prints the warnings of its settings.
 OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& request);
 
@@ -45,7 +46,8 @@ OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& re
 // and the choices of the request are those of `arguments`.
 OpenedDataset OpenAnyDataset(const AnyDatasetArguments& arguments, DatasetRequest request);
 
-// "rgbd_tum"
-std::string ProgramOf(const Dataset& dataset, SensorKind sensor);
+// The ground truth of the sequence. SLAM does not need it: what was skipped or converted is printed
+// as a warning, and if it cannot be used, so is the reason, and the result is absent.
+std::optional<Trajectory> FindGroundtruth(const ImageSequence& sequence);
 
 }  // namespace hullslam

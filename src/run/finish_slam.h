@@ -8,11 +8,11 @@
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/system.h"
 #include "results/output_folder.h"
+#include "results/summarize_run.h"
+#include "run/dataset_arguments.h"
 #include "run/live_output.h"
-#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/run_arguments.h"
-#include "run/summarize_run.h"
 
 namespace hullslam {
 

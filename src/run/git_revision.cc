@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/git_revision.h"
+#include "run/program.h"
 
 namespace hullslam {
 

@@ -13,8 +13,8 @@
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system.h"
-#include "run/frame_source.h"
 #include "run/run_arguments.h"
+#include "segmentation/frame_source.h"
 
 namespace CLI {
 class App;

@@ -7,22 +7,18 @@
 #include <system_error>
 #include <utility>
 
+#include "datasets/run_files.h"
 #include "files/atomic_file.h"
 #include "files/canonical_path.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
-#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string Title(size_t number, const std::string& name) {
-  return fmt::format("session {}: {}", number, name);
-}
 
 void CheckSavedFile(const char* option, const fs::path& file, const RunArguments& arguments) {
   if (file.empty()) {
@@ -86,8 +82,6 @@ std::string SaveMap(const RunArguments& arguments, const SystemOptions& options,
   return {};
 }
 
-std::string IslandSuffix(IslandId island) { return fmt::format("_island{}", island.value + 1); }
-
 std::string SaveIslands(const RunArguments& arguments, const SystemOptions& options,
                         std::span<const LeftIsland> islands) {
   for (const LeftIsland& island : islands) {
@@ -104,27 +98,13 @@ std::string SaveIslands(const RunArguments& arguments, const SystemOptions& opti
   return {};
 }
 
-std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
-                                     const Trajectory& trajectory) {
+std::optional<std::string> SessionTitle(const RunArguments& arguments, size_t earlier_sessions) {
+  if (arguments.load_map.empty()) {
+    return std::nullopt;
+  }
   const std::string name = CanonicalName(arguments.sequence);
-  if (arguments.load_map.empty()) {
-    return {{.title = {}, .poses = trajectory}};
-  }
-  return {{.title =
-               arguments.localization ? "localization: " + name : Title(earlier_sessions + 1, name),
-           .poses = trajectory}};
-}
-
-std::vector<TrajectoryPart> KeyframeParts(const RunArguments& arguments, const Map& map) {
-  if (arguments.load_map.empty()) {
-    return {{.title = {}, .poses = KeyframeTrajectory(map)}};
-  }
-  std::vector<TrajectoryPart> parts = {{.title = {}, .poses = KeyframeTrajectory(map, 0)}};
-  for (size_t number = 1; number <= map.sessions().size(); ++number) {
-    parts.push_back({.title = Title(number, map.sessions()[number - 1].name),
-                     .poses = KeyframeTrajectory(map, number)});
-  }
-  return parts;
+  return arguments.localization ? "localization: " + name
+                                : TitleOfSession(earlier_sessions + 1, name);
 }
 
 }  // namespace hullslam

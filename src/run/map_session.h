@@ -3,11 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system.h"
 #include "hullslam/system/system_start.h"
@@ -30,19 +29,13 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
 // full; empty if there was no error.
 std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
 
-// "_island2" for the second island that was begun: part of the names of its files.
-std::string IslandSuffix(IslandId island);
-
 // Writes the maps of these islands beside the file of --save-map if it is given: desk_island2.map
 // beside desk.map. They replace earlier ones. Returns the first error as SaveMap does.
 std::string SaveIslands(const RunArguments& arguments, const SystemOptions& options,
                         std::span<const LeftIsland> islands);
 
-// RunParts() gives the trajectory of the run, with the title of its session: the map had
-// `earlier_sessions` sessions before. KeyframeParts() gives the poses of the keyframes, with one
-// part per session. Without --load-map there are no titles.
-std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
-                                     const Trajectory& trajectory);
-std::vector<TrajectoryPart> KeyframeParts(const RunArguments& arguments, const Map& map);
+// The title of the session of the run in its trajectory: the map had `earlier_sessions` sessions
+// before. Without --load-map there is none.
+std::optional<std::string> SessionTitle(const RunArguments& arguments, size_t earlier_sessions);
 
 }  // namespace hullslam

@@ -5,11 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <utility>
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "util/counted.h"
 
 namespace hullslam {
 
@@ -57,76 +55,31 @@ void AddNetworkArguments(CLI::App& app, std::filesystem::path& network, size_t& 
       ->capture_default_str();
 }
 
+void AddSegmenterOptions(CLI::App& app, SegmenterOptions& options) {
+  app.add_option("--names", options.names,
+                 "file with the name of one class per line (default: those in the network's file)");
+  app.add_option("--classes", options.classes, "only these classes, separated by commas")
+      ->delimiter(',');
+  ExpectNumber(*app.add_option("--min-score", options.min_score, "least score of an instance")
+                    ->capture_default_str(),
+               0.0, 1.0);
+  app.add_option("--size", options.size,
+                 "longer side of the image that the network sees, px (default: as its input)")
+      ->check(WholeNumber(1));
+  app.add_option("--threads", options.threads, "threads of the network (default: all cores)")
+      ->check(WholeNumber(1));
+  app.add_flag("--boxes", options.use_boxes,
+               "use the boxes of a network that finds no masks; the format is boxes");
+}
+
 MaskRequest RequestOf(const std::filesystem::path& path, const std::string& format,
                       const ImageSequence& sequence, const PinholeCamera& camera) {
+  if (path.empty() && !format.empty()) {
+    throw InputError(
+        fmt::format("--masks-format is '{}' without --masks, expected both or neither", format));
+  }
   const cv::Size size = SizeAsRead(sequence, camera);
   return {path, format, size.width, size.height};
-}
-
-SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)
-    : path_(request.path.string()), frames_(std::move(frames)) {
-  if (!request.path.empty()) {
-    source_ = OpenMasks(request, frames_);
-    counts_ = CheckMasks(*source_, frames_, request);
-  } else if (!request.format.empty()) {
-    throw InputError(fmt::format("--masks-format is '{}' without --masks, expected both or neither",
-                                 request.format));
-  }
-}
-
-SequenceMasks::SequenceMasks(std::unique_ptr<const NetworkMasks> network,
-                             std::vector<MaskFrame> frames)
-    : frames_(std::move(frames)), network_(network.get()) {
-  source_ = std::move(network);
-}
-
-std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
-  return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
-}
-
-void SequenceMasks::AddRight(const MaskRequest& request, std::vector<MaskFrame> frames) {
-  right_ = std::make_unique<const SequenceMasks>(request, std::move(frames));
-}
-
-std::vector<InstanceMask> SequenceMasks::ReadRight(size_t frame) const {
-  return right_ == nullptr ? std::vector<InstanceMask>() : right_->Read(frame);
-}
-
-std::set<std::string> SequenceMasks::Labels() const {
-  if (network_ != nullptr) {
-    return {network_->class_names().begin(), network_->class_names().end()};
-  }
-  std::set<std::string> labels;
-  for (size_t frame = 0; frame < frames_.size(); ++frame) {
-    for (const InstanceMask& mask : Read(frame)) {
-      labels.insert(mask.label);
-    }
-  }
-  return labels;
-}
-
-std::optional<std::string> SequenceMasks::format() const {
-  return source_ == nullptr ? std::nullopt : std::optional(source_->format());
-}
-
-std::string SequenceMasks::Describe() const {
-  if (network_ != nullptr) {
-    return "masks are made by " + network_->Describe();
-  }
-  return source_ == nullptr
-             ? std::string("no masks")
-             : fmt::format("masks: {} ({}), {} of {} frames have none{}{}{}", path_,
-                           source_->format(), counts_.without_masks, frames_.size(),
-                           counts_.missing == 0
-                               ? std::string()
-                               : fmt::format(", {} of them because they have no file or "
-                                             "entry",
-                                             counts_.missing),
-                           counts_.without_area == 0
-                               ? std::string()
-                               : fmt::format("; left out: {} without an outline of 1 px^2 or more",
-                                             Counted(counts_.without_area, "instance")),
-                           right_ == nullptr ? std::string() : "\nright " + right_->Describe());
 }
 
 }  // namespace hullslam

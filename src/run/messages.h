@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "util/printable.h"
 
@@ -36,6 +37,12 @@ void PrintError(fmt::format_string<Values...> format, Values&&... values) {
     line.pop_back();
   }
   PrintText(stderr, Printable(line) + (has_end ? "\n" : ""));
+}
+
+inline void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    PrintError("warning: {}\n", warning);
+  }
 }
 
 }  // namespace hullslam

@@ -7,37 +7,14 @@
 #include <map>
 #include <set>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "hullslam/map/initialisation_failure.h"
+#include "results/summarize_run.h"
 #include "run/messages.h"
-#include "run/summarize_run.h"
 #include "util/counted.h"
 
 namespace hullslam {
 namespace {
-
-// A text such as "40 x too little parallax, 3 x too few matches", the most frequent reason first,
-// with advice for the user.
-std::string DescribeFailures(const InitialisationSummary& initialisation) {
-  std::vector<std::pair<size_t, std::string>> reasons;
-  for (const auto& [reason, count] : initialisation.failures) {
-    reasons.emplace_back(count, fmt::format("{} x {}", count, reason));
-  }
-  std::sort(reasons.rbegin(), reasons.rend());
-  std::string text;
-  for (const auto& [count, reason] : reasons) {
-    text += (text.empty() ? "" : ", ") + reason;
-  }
-  const bool lacks_parallax =
-      !reasons.empty() &&
-      reasons.front().second.ends_with(ToString(InitialisationFailure::kTooLittleParallax));
-  return text + (lacks_parallax
-                     ? "; the camera must move sideways, or, if it can only go forward, as in a "
-                       "car, have more features: --set ORBextractor.nFeatures=2000"
-                     : "");
-}
 
 // Of a camera that was lost and went on elsewhere; nothing if the map is in one piece.
 void PrintIslands(const IslandsSummary& islands, bool are_kept) {
@@ -201,36 +178,6 @@ void PrintResults(const RunArguments& arguments, const RunSummary& summary,
       summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
       summary.timing.frames_per_second, summary.peak_memory_mb);
   Print("results are in {}\n", arguments.output.string());
-}
-
-std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
-                         const RunSummary& summary, std::span<const TrackedFrame> frames) {
-  const TrajectorySummary& trajectory = summary.trajectory;
-  if (!arguments.load_map.empty() && trajectory.tracked == 0) {
-    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
-                       arguments.load_map.string(), given);
-  }
-  if (summary.initialisation && !summary.initialisation->seconds) {
-    return fmt::format("no map could be made from {}: {}",
-                       Counted(summary.trajectory.frames, "frame"),
-                       DescribeFailures(*summary.initialisation));
-  }
-  const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);
-  const auto all = static_cast<double>(given);
-  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
-    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
-                       options.max_lost_share);
-  }
-  const auto last_tracked = std::find_if(
-      frames.rbegin(), frames.rend(),
-      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
-  if (last_tracked != frames.rend() &&
-      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
-    return fmt::format(
-        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
-        found, options.max_lost_at_end);
-  }
-  return {};
 }
 
 std::string FormatFigure(const std::optional<double>& figure, int decimals) {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "hullslam/map/messages.h"
-#include "hullslam/system/options.h"
 #include "report/object_results.h"
 #include "results/summary.h"
 #include "run/run_arguments.h"
@@ -18,11 +14,6 @@ namespace hullslam {
 // Prints the results of a SLAM run.
 void PrintResults(const RunArguments& arguments, const RunSummary& summary,
                   const ObjectResults& objects);
-
-// Says why a run of `given` frames that came to its end counts as failed: too many frames were
-// lost. Empty if it does not count as failed. `frames` are the tracked and the lost frames.
-std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
-                         const RunSummary& summary, std::span<const TrackedFrame> frames);
 
 // The text "objects of the map: 12 seen again, ...", and one line for each object that was moved,
 // is gone or is new.

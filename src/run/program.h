@@ -52,4 +52,8 @@ int RunMain(const Run& run, int argc, char** argv) {
   return FinishStdout(code);
 }
 
+// The revision that this program was configured from, as `git describe` gives it; empty outside of
+// a clone.
+std::string GitRevision();
+
 }  // namespace hullslam

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <system_error>
 
+#include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/dataset_arguments.h"
 #include "run/live_output.h"
-#include "run/load_settings.h"
 #include "run/mask_arguments.h"
-#include "run/mcap_output.h"
-#include "run/report_output.h"
+#include "run/more_outputs.h"
 #include "run/vocabularies.h"
 
 namespace hullslam {

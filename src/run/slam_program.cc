@@ -9,8 +9,6 @@
 
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/given_groundtruth.h"
-#include "run/input_warnings.h"
 #include "run/live_output.h"
 #include "run/messages.h"
 #include "run/program.h"
@@ -46,7 +44,7 @@ int RunOnDataset(const Dataset& dataset, const RunArguments& arguments,
       (!arguments.groundtruth.empty() && !dataset.reads_groundtruth)) {
     UseGivenGroundtruth(arguments.groundtruth, dataset.expected_stamps, opened.sequence);
   }
-  PrintWarnings(opened.sequence);
+  PrintWarnings(opened.sequence.warnings);
   return RunSlam(arguments, std::move(opened.settings), opened.sequence, opened.notes);
 }
 
@@ -85,7 +83,7 @@ int RunRun(int argc, char** argv) {
   if (!any.sensor && !arguments.associations.empty()) {
     any.sensor = SensorKind::kRgbd;
   }
-  const FoundDataset found = FindGivenDataset(arguments.sequence, any);
+  const FoundDataset found = FindDataset(arguments.sequence, any.sensor, any.choices);
   arguments.sensor = found.sensor;
   arguments.program = ProgramOf(*found.dataset, found.sensor);
   CheckSensorOptions(arguments);

@@ -11,24 +11,22 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/datasets/input_checks.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
 #include "results/output_folder.h"
+#include "run/dataset_arguments.h"
 #include "run/finish_slam.h"
-#include "run/frame_source.h"
-#include "run/given_groundtruth.h"
-#include "run/input_warnings.h"
 #include "run/interrupt.h"
-#include "run/late_masks.h"
 #include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/summarize_run.h"
 #include "run/vocabularies.h"
+#include "segmentation/frame_source.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -127,33 +125,16 @@ SequenceMasks OpenRunMasks(const RunArguments& arguments, const ImageSequence& s
                        MaskFrames(sequence));
 }
 
-// Null if all frames are tracked with their masks.
-std::unique_ptr<LateMasks> MakeLateMasks(const RunArguments& arguments, const SequenceMasks& masks,
-                                         System& system) {
-  if (masks.network() == nullptr || masks.network()->IsRead(1)) {
-    return nullptr;
+// Prints the warnings that are new since the last call. `printed` counts them.
+void PrintNewWarnings(const System& system, size_t& printed, Progress& progress) {
+  std::vector<std::string> warnings = system.warnings();
+  if (printed < warnings.size()) {
+    progress.Clear();
+    warnings.erase(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(printed));
+    PrintWarnings(warnings);
+    printed += warnings.size();
   }
-  return std::make_unique<LateMasks>(
-      arguments.realtime ? LateMasks::Pace::kNeverWait : LateMasks::Pace::kWait, *masks.network(),
-      system);
 }
-
-// Prints the warnings of a system, each once.
-class SystemWarnings {
- public:
-  void Print(const System& system, Progress& progress) {
-    const std::vector<std::string> warnings = system.warnings();
-    if (printed_ < warnings.size()) {
-      progress.Clear();
-    }
-    for (; printed_ < warnings.size(); ++printed_) {
-      PrintError("warning: {}\n", warnings[printed_]);
-    }
-  }
-
- private:
-  size_t printed_ = 0;
-};
 
 // A run while its frames are tracked.
 struct TrackedRun {
@@ -167,12 +148,11 @@ struct TrackedRun {
 
 // Tracks the frames up to the end or an interruption. Throws InputError if the input of a frame
 // cannot be used; the frames before it have been tracked. `shown` is the failure of the last frame.
-void TrackFrames(const TrackedRun& run, LateMasks* late_masks,
-                 const std::optional<InitialisationFailure>& shown, Clock::time_point& start,
-                 Progress& progress, RunResult& result) {
+void TrackFrames(const TrackedRun& run, const std::optional<InitialisationFailure>& shown,
+                 Clock::time_point& start, Progress& progress, RunResult& result) {
   FrameSource frames(run.arguments.realtime ? Pace::kRealtime : Pace::kFast, run.sequence,
-                     run.camera, run.masks, run.system, run.live.IsOn());
-  SystemWarnings warnings;
+                     run.camera, run.masks, run.system, run.live.IsOn(), &Interruption());
+  size_t warnings = 0;
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited =
@@ -194,17 +174,12 @@ void TrackFrames(const TrackedRun& run, LateMasks* late_masks,
       continue;
     }
     const Clock::time_point begin = Clock::now();
-    const TrackedFrame frame = run.system.Track(std::move(*loaded->frame));
-    if (late_masks != nullptr && !loaded->has_unknown_masks) {
-      late_masks->AfterFrame(frame, loaded->colour);
-    }
-    warnings.Print(run.system, progress);
+    const TrackedFrame frame = frames.Track(*loaded);
+    PrintNewWarnings(run.system, warnings, progress);
     run.live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), run.system);
     progress.Show(result.given, [&] { return DescribeState(frame.state, shown, run.system); });
   }
-  if (late_masks != nullptr) {
-    late_masks->Finish();
-  }
+  frames.Finish();
 }
 
 void WarnOfFailedMasks(const SequenceMasks& masks) {
@@ -221,7 +196,6 @@ void WarnOfFailedMasks(const SequenceMasks& masks) {
 RunResult TrackAll(const TrackedRun& run) {
   RunResult result;
   System& system = run.system;
-  const std::unique_ptr<LateMasks> late_masks = MakeLateMasks(run.arguments, run.masks, system);
   Progress progress(run.sequence.frames.size(), run.arguments.quiet);
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
@@ -232,7 +206,7 @@ RunResult TrackAll(const TrackedRun& run) {
   });
   Clock::time_point start = Clock::now();
   try {
-    TrackFrames(run, late_masks.get(), failure, start, progress, result);
+    TrackFrames(run, failure, start, progress, result);
   } catch (const InputError& error) {
     // A frame that is refused changes nothing, so the results up to it can be written.
     result.input_failure = error.what();
@@ -265,13 +239,14 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
 void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
                  const ImageSequence& sequence, const SequenceMasks& masks) {
   if (options.sensor == SensorKind::kRgbd) {
-    WarnOfUnregisteredDepth(sequence, options.camera);
+    PrintWarnings(CheckDepth(sequence, options.camera));
   }
   if (masks.network() == nullptr) {
-    WarnOfMisplacedMasks(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); });
+    PrintWarnings(
+        CheckMaskPlaces(sequence, options.camera, [&](size_t frame) { return masks.Read(frame); }));
   }
-  WarnOfUnknownClasses(options.tracking, options.objects, masks);
-  WarnOfLastFrame(arguments.selection, sequence);
+  PrintWarnings(CheckClasses(options, [&] { return masks.Labels(); }));
+  PrintWarnings(CheckLastFrame(arguments.selection, sequence));
 }
 
 void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "hullslam/sequences/image_sequence.h"
-#include "run/load_settings.h"
+#include "run/dataset_arguments.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {

@@ -4,14 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <chrono>
-#include <fstream>
-#include <span>
 #include <string>
-#include <system_error>
 
-#include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
 
@@ -42,25 +37,6 @@ Vocabulary LoadVocabulary(const std::filesystem::path& path, bool is_quiet) {
       PrintError("reading {}: {} of {} MB\n", path.string(), done, most);
     }
   });
-}
-
-bool IsVocabularyFile(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return false;
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(200, '\0');
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<size_t>(file.gcount()));
-  if (Vocabulary::IsBinary(std::as_bytes(std::span(begin)))) {
-    return true;
-  }
-  // The text form begins with four whole numbers: branching, levels, score and weight.
-  const std::string line = begin.substr(0, begin.find_first_of("\r\n"));
-  Eigen::Vector4d numbers;
-  return line.find_first_not_of("0123456789 \t") == std::string::npos &&
-         ParseFinites(line, numbers);
 }
 
 void AddVocabularyForm(CLI::App& app, std::string& form) {

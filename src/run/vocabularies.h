@@ -26,9 +26,6 @@ std::shared_ptr<const Vocabulary> ChooseVocabulary(const std::filesystem::path& 
 Vocabulary LoadVocabulary(const std::filesystem::path& path, bool is_quiet);
 
 // Adds the option --form.
-// Whether the file begins like a vocabulary of either form. False for a file that cannot be read.
-bool IsVocabularyFile(const std::filesystem::path& path);
-
 void AddVocabularyForm(CLI::App& app, std::string& form);
 
 // The form in which a vocabulary file is written: `form` ("binary" or "text") if it is given, else

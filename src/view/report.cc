@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "view/report.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "files/content_hash.h"
+#include "files/read_file.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "system/make_sensor.h"
@@ -60,17 +64,41 @@ Report ReportOfMap(const std::filesystem::path& map, const std::string& version)
   return Format(std::move(model));
 }
 
+// The last line of a report that a run itself has written, with the hash of the run's summary;
+// empty without a summary.
+std::string MarkOf(const std::filesystem::path& folder) {
+  try {
+    const std::string summary = ReadFile(folder / "summary.json");
+    return fmt::format("<!-- written by the run with the summary {} -->\n",
+                       ContentHash(summary.data(), summary.size()));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
                   const ImageSequence& sequence) {
   const Sensor sensor = MakeSensor(options);
   const ViewSettings settings = CompareWithDefaults(options);
-  return Format(ViewOfRun(folder, {.map = &map,
-                                   .sensor = &sensor,
-                                   .options = &options.objects,
-                                   .sequence = &sequence,
-                                   .settings = &settings}));
+  Report report = Format(ViewOfRun(folder, {.map = &map,
+                                            .sensor = &sensor,
+                                            .options = &options.objects,
+                                            .sequence = &sequence,
+                                            .settings = &settings}));
+  report.page += MarkOf(folder);
+  return report;
+}
+
+bool HasOwnReport(const std::filesystem::path& folder) {
+  constexpr size_t kMostBytes = 100'000'000;
+  const std::string mark = MarkOf(folder);
+  try {
+    return !mark.empty() && ReadFile(folder / "report.html", kMostBytes).ends_with(mark);
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 Report MakeReport(const std::filesystem::path& folder) { return Format(ViewOfRun(folder)); }

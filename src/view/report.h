@@ -18,9 +18,13 @@ struct Report {
 };
 
 // The report of a run whose results are in the folder. The map and the sequence add what the files
-// do not have. Throws InputError if the files are not from a run.
+// do not have; a mark at the end of the page says so. Throws InputError if the files are not
+// from a run.
 Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
                   const ImageSequence& sequence);
+// Whether report.html in the folder has the mark of the run whose results are there. Then it shows
+// more than the files tell.
+bool HasOwnReport(const std::filesystem::path& folder);
 // The report of a finished run, of which only the files are left.
 Report MakeReport(const std::filesystem::path& folder);
 // The report of a finished run or of a file of --save-map, whichever `source` is. `version` is that

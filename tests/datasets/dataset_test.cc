@@ -180,5 +180,22 @@ TEST(OpenDataset, ANumberOfAChoiceIsChecked) {
   ExpectInputError([&] { OpenDataset(*found.dataset, request); }, {"fov is 'wide'", "a number"});
 }
 
+TEST(Datasets, AChoiceThatTheDataSetDoesNotHaveIsRefused) {
+  const TemporaryFolder folder;
+  folder.Write("tum/rgb.txt", "");
+  folder.Write("walk.mp4", "");
+  const auto find = [&](const char* name, const DatasetChoices& choices) {
+    return FindDataset(folder.path() / name, std::nullopt, choices);
+  };
+  ExpectInputError(
+      [&] {
+        find("tum", {{"fov", "60"}});
+      },
+      {"--fov is given", "TUM RGB-D", "no such choice"});
+  EXPECT_EQ(ProgramOf(*find("walk.mp4", {{"fov", "60"}}).dataset, SensorKind::kMonocular),
+            "mono_video");
+  EXPECT_EQ(find("walk.mp4", {{"side_by_side", "true"}}).sensor, SensorKind::kStereo);
+}
+
 }  // namespace
 }  // namespace hullslam

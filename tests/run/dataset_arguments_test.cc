@@ -7,7 +7,6 @@
 
 #include "run/command_line.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
 
 namespace hullslam {
 namespace {
@@ -32,22 +31,6 @@ TEST(DatasetArguments, OptionsBecomeChoices) {
   EXPECT_EQ(arguments.choices, (DatasetChoices{{"image_topic", "/left"}, {"times", "recording"}}));
   EXPECT_TRUE(Parse({}).choices.empty());
   ExpectInputError([] { Parse({"--fov", "wide"}); }, {"--fov", "'wide'", "a number"});
-}
-
-TEST(DatasetArguments, AChoiceThatTheDataSetDoesNotHaveIsRefused) {
-  const TemporaryFolder folder;
-  folder.Write("tum/rgb.txt", "");
-  ExpectInputError(
-      [&] {
-        FindGivenDataset(folder.path() / "tum", Parse({"--fov", "60"}));
-      },
-      {"--fov is given", "TUM RGB-D", "no such choice"});
-  folder.Write("walk.mp4", "");
-  EXPECT_EQ(ProgramOf(*FindGivenDataset(folder.path() / "walk.mp4", Parse({"--fov", "60"})).dataset,
-                      SensorKind::kMonocular),
-            "mono_video");
-  EXPECT_EQ(FindGivenDataset(folder.path() / "walk.mp4", Parse({"--side-by-side"})).sensor,
-            SensorKind::kStereo);
 }
 
 }  // namespace

@@ -97,8 +97,13 @@ struct Dataset {
 // The data sets, in the order in which a path is compared with them.
 std::span<const Dataset> Datasets();
 
+// The options of all data sets, each once.
+std::vector<DatasetOption> AllDatasetOptions();
+
 // The data set of the program SENSOR_NAME, such as rgbd_tum. Throws InputError if there is none.
 const Dataset& DatasetOfProgram(std::string_view program, SensorKind sensor);
+// The name of this program.
+std::string ProgramOf(const Dataset& dataset, SensorKind sensor);
 
 // "RGB-D", "monocular" or "stereo".
 const char* ToString(SensorKind sensor);
@@ -116,6 +121,10 @@ struct FoundDataset {
 // whose error tells what it expects. Throws InputError if nothing is at the path.
 FoundDataset FindDataset(const std::filesystem::path& path,
                          std::optional<SensorKind> sensor = std::nullopt);
+// The same for a data set that is to be opened with these choices. One of them may tell the sensor.
+// Throws InputError for choices that the data set does not have.
+FoundDataset FindDataset(const std::filesystem::path& path, std::optional<SensorKind> sensor,
+                         const DatasetChoices& choices);
 
 // Opens a data set of this kind: reads the settings, resizes the images if the settings ask for it,
 // and checks some pairs of a stereo camera (PairCheck). Throws InputError for bad input.
@@ -123,5 +132,11 @@ OpenedDataset OpenDataset(const Dataset& dataset, const DatasetRequest& request)
 
 // Opens the images of whatever is at the path; see Dataset::open_images. Throws InputError.
 ImageSequence OpenImages(const std::filesystem::path& path, const DatasetChoices& choices = {});
+
+// Gives the sequence the file of --groundtruth in place of its own ground truth; "none" takes the
+// own one away. Throws InputError if the file cannot be read, or if no true pose has a stamp during
+// the images. `expected` says for the message what the user can do then.
+void UseGivenGroundtruth(const std::filesystem::path& file, const std::string& expected,
+                         ImageSequence& sequence);
 
 }  // namespace hullslam

@@ -7,6 +7,7 @@
 
 #include "hullslam/eval/association.h"
 #include "hullslam/eval/error_statistics.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/eigen_alignment.h"
@@ -54,5 +55,8 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
 std::string DescribeMissingPairs(const AteResult& report);
 
 const char* ToString(AlignmentKind kind);
+
+// The scale of a monocular map is not known, so its alignment has a scale.
+AlignmentKind AlignmentOf(SensorKind sensor);
 
 }  // namespace hullslam

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hullslam/eval/association.h"
+#include "hullslam/eval/ate.h"
 #include "hullslam/eval/error_statistics.h"
 #include "hullslam/geometry/trajectory.h"
 
@@ -42,5 +44,16 @@ RpeResult EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
 // or if they agree within one degree as they are. `report` is about the same trajectories.
 std::string DescribeSwappedRotations(const Trajectory& reference, const Trajectory& estimate,
                                      const RpeResult& report, const RpeOptions& options = {});
+
+// The absolute and relative errors of a trajectory. The alignment gives the scale of both.
+struct TrajectoryErrors {
+  AteOptions options;
+  AteResult ate;
+  RpeResult rpe = {};                      // only if the absolute error could be computed
+  std::vector<std::string> warnings = {};  // faults of the stamps and of the reference
+};
+
+TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
+                                    const AteOptions& options);
 
 }  // namespace hullslam

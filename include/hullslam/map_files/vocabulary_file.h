@@ -15,6 +15,9 @@ namespace hullslam {
 Vocabulary ReadVocabulary(const std::filesystem::path& path,
                           const ProgressCallback& on_progress = {});
 
+// Whether the file begins like a vocabulary of either form. False for a file that cannot be read.
+bool IsVocabularyFile(const std::filesystem::path& path);
+
 enum class VocabularyForm { kBinary, kText };
 
 // Writes like WriteFileAtomically(): the file is complete or not there at all. Reading it gives a

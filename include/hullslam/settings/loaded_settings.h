@@ -29,4 +29,11 @@ LoadedSettings LoadSettings(const CameraCalibration& calibration, const std::str
                             const std::string& preset = {},
                             std::span<const std::string> overrides = {});
 
+// Throws InputError if the preset needs masks and there are none, unless objects are switched off.
+void CheckPresetHasMasks(const LoadedSettings& settings, const std::filesystem::path& masks);
+
+// "preset: NAME (FILE)" and what --set has replaced in it, which a user sees before a run. Empty
+// without a preset. (What a settings file replaces is a warning of LoadSettings().)
+std::string DescribePreset(const LoadedSettings& settings);
+
 }  // namespace hullslam

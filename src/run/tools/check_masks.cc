@@ -3,10 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,21 +12,19 @@
 #include <system_error>
 #include <vector>
 
-#include "frame/detection_builder.h"
+#include "hullslam/datasets/input_checks.h"
 #include "hullslam/masks/open_masks.h"
 #include "masks/mask_overlay.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/input_warnings.h"
 #include "run/interrupt.h"
-#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
-#include "run/tools/view_images.h"
+#include "segmentation/sequence_masks.h"
 #include "sequences/image_file.h"
 
 namespace hullslam {
@@ -50,32 +46,6 @@ struct CheckMasksArguments {
   fs::path output;  // empty: no pictures
   size_t every = 50;
   bool quiet = false;
-};
-
-// The instances of one class: how many there are, and how many give a detection.
-struct ClassCount {
-  size_t instances = 0;
-  size_t kept = 0;
-  double score_sum = 0.0;
-};
-
-struct MaskStatistics {
-  size_t frames = 0;
-  size_t missing = 0;
-  size_t without_masks = 0;
-  size_t without_image = 0;
-  size_t without_depth = 0;
-  size_t instances = 0;
-  size_t crowds = 0;
-  size_t without_area = 0;
-  std::array<size_t, kDetectionRejectionCount> rejections{};
-  size_t detections = 0;
-  size_t cut = 0;
-  size_t lines = 0;
-  size_t one_sided = 0;
-  std::map<std::string, ClassCount> classes;
-  std::vector<std::string> faults;
-  size_t pictures = 0;
 };
 
 void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
@@ -108,66 +78,21 @@ void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
                          "some of them cannot be read, or bad usage");
 }
 
-void CountDetections(const FrameMasks& frame, const DetectionResult& result,
-                     MaskStatistics& counts) {
-  for (size_t i = 0; i < frame.masks.size(); ++i) {
-    ClassCount& of_class = counts.classes[frame.masks[i].label];
-    ++of_class.instances;
-    of_class.score_sum += frame.masks[i].score;
-    if (const auto& rejection = result.rejections.at(i)) {
-      ++counts.rejections.at(static_cast<size_t>(*rejection));
-    } else {
-      ++of_class.kept;
-    }
-  }
-  counts.detections += result.detections.size();
-  for (const Detection& detection : result.detections) {
-    counts.cut += detection.is_cut ? 1 : 0;
-    counts.lines += detection.lines.size();
-    for (const SilhouetteLine& line : detection.lines) {
-      counts.one_sided += line.is_one_sided ? 1 : 0;
-    }
-  }
-}
-
 // The image. If its file is missing, a grey area of the size of the camera's images.
 cv::Mat Background(const cv::Mat& grey, const PinholeCamera& camera) {
   return grey.empty() ? cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96)) : grey;
 }
 
-void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
-               const FrameMasks& frame, const DetectionResult& result, OutputFolder& output) {
-  output.Write({name, EncodeImage(DrawMasks(grey, camera, frame.masks, result), ".png")});
-}
-
-// Counts the masks of one frame and, if `output` is given, draws them. If its masks or images
-// cannot be read, this is recorded as a fault.
-void CheckFrame(const CheckMasksArguments& arguments, const OpenedDataset& opened,
-                const MaskSource& source, const FramePaths& paths, const MaskFrame& names,
-                OutputFolder* output, MaskStatistics& counts) {
-  const SystemOptions& options = opened.settings.options;
-  const PinholeCamera& camera = options.camera;
-  const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
-  ++counts.frames;
-  counts.without_image += HasImage(opened.sequence, paths) ? 0 : 1;
-  counts.without_depth += paths.depth.empty() ? 1 : 0;
+// Checks a frame and, if `output` is given, draws its masks. What cannot be read is recorded.
+void CheckAndDraw(const CheckedSource& checked, size_t frame, const MaskFrame& names,
+                  OutputFolder* output, MaskStatistics& counts) {
   try {
-    FrameMasks frame = source.Read(names);
-    CheckMasks(source, {&names, 1}, RequestOf(arguments.masks, {}, opened.sequence, camera));
-    FitMasks(opened.sequence.warps, ImageSide::kLeft, frame.masks);
-    counts.missing += frame.is_missing ? 1 : 0;
-    counts.without_masks += frame.masks.empty() ? 1 : 0;
-    counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
-    counts.without_area += frame.without_area;
-    counts.crowds += frame.crowds;
-    const ViewImages view = ReadView(opened.sequence, paths, camera, is_drawn);
-    const DetectionBuilder builder(camera, options.depth.units_per_metre,
-                                   options.objects.detection);
-    const DetectionResult result = builder.Build(frame.masks, view.depth, {});
-    CountDetections(frame, result, counts);
-    if (is_drawn) {
-      DrawFrame(names.stem + ".png", Background(view.grey, camera), camera, frame, result, *output);
-      ++counts.pictures;
+    const CheckedFrame found =
+        CheckFrame(checked, checked.sequence.frames[frame], names, output != nullptr, counts);
+    if (output != nullptr) {
+      const cv::Mat picture = DrawMasks(Background(found.view.grey, checked.camera), checked.camera,
+                                        found.masks.masks, found.result);
+      output->Write({names.stem + ".png", EncodeImage(picture, ".png")});
     }
   } catch (const InputError& error) {
     counts.faults.emplace_back(error.what());
@@ -187,7 +112,7 @@ void PrintClasses(const MaskStatistics& counts) {
 }
 
 void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
-                 const MaskStatistics& counts) {
+                 const MaskStatistics& counts, size_t pictures) {
   const auto print = [](const std::string& name, size_t count) {
     Print("{:<24}{:>10}\n", name, count);
   };
@@ -209,7 +134,7 @@ void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
   print("lines", counts.lines);
   print("  one-sided", counts.one_sided);
   if (!arguments.output.empty()) {
-    Print("{} pictures are in {}\n", counts.pictures, arguments.output.string());
+    Print("{} pictures are in {}\n", pictures, arguments.output.string());
   }
   PrintClasses(counts);
 }
@@ -233,12 +158,15 @@ std::unique_ptr<OutputFolder> OpenOutput(const CheckMasksArguments& arguments) {
   return std::make_unique<OutputFolder>(arguments.output, "pictures.json", inputs);
 }
 
-void FinishOutput(OutputFolder& output) {
+// Returns the number of pictures.
+size_t FinishOutput(OutputFolder& output) {
+  const size_t pictures = output.names().size();
   const nlohmann::ordered_json index = {{"files", output.names()}};
   output.Write(
       {"pictures.json",
        index.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n'});
   output.Commit();
+  return pictures;
 }
 
 OpenedDataset OpenSequence(const CheckMasksArguments& arguments) {
@@ -248,7 +176,7 @@ OpenedDataset OpenSequence(const CheckMasksArguments& arguments) {
                                                         .overrides = arguments.overrides,
                                                         .associations = arguments.associations,
                                                         .need_images = false});
-  PrintWarnings(opened.sequence);
+  PrintWarnings(opened.sequence.warnings);
   opened.settings.options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   return opened;
 }
@@ -268,16 +196,20 @@ int RunCheckMasks(int argc, char** argv) {
   const ImageSequence& sequence = opened.sequence;
   const PinholeCamera& camera = opened.settings.options.camera;
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
-  const auto source =
-      OpenMasks(RequestOf(arguments.masks, arguments.format, sequence, camera), frames);
+  const MaskRequest request = RequestOf(arguments.masks, arguments.format, sequence, camera);
+  const auto source = OpenMasks(request, frames);
   CatchInterrupts();
   const auto output = OpenOutput(arguments);
-  WarnOfMisplacedMasks(sequence, camera,
-                       [&](size_t frame) { return source->Read(frames[frame]).masks; });
+  PrintWarnings(CheckMaskPlaces(sequence, camera,
+                                [&](size_t frame) { return source->Read(frames[frame]).masks; }));
+  const DetectionBuilder builder(camera, opened.settings.options.depth.units_per_metre,
+                                 opened.settings.options.objects.detection);
+  const CheckedSource checked = {sequence, *source, request, camera, builder};
   MaskStatistics counts;
   Progress progress(frames.size(), arguments.quiet);
   for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {
-    CheckFrame(arguments, opened, *source, sequence.frames[i], frames[i], output.get(), counts);
+    const bool is_drawn = output != nullptr && i % arguments.every == 0;
+    CheckAndDraw(checked, i, frames[i], is_drawn ? output.get() : nullptr, counts);
     progress.Show(i + 1);
   }
   progress.Clear();
@@ -286,10 +218,8 @@ int RunCheckMasks(int argc, char** argv) {
                              counts.frames, frames.size()));
     return kFailed;
   }
-  if (output != nullptr) {
-    FinishOutput(*output);
-  }
-  PrintCounts(arguments, *source, counts);
+  const size_t pictures = output != nullptr ? FinishOutput(*output) : 0;
+  PrintCounts(arguments, *source, counts, pictures);
   PrintFaults(counts.faults);
   return counts.faults.empty() ? kDone : kBadInput;
 }

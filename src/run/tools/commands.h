@@ -33,4 +33,8 @@ struct Command {
 // In the order of --help.
 std::span<const Command> Commands();
 
+// The program hullslam: `hullslam COMMAND ...` runs a command of tools/commands.h. Returns the exit
+// code. Throws InputError for bad usage or input.
+int RunHullslam(int argc, char** argv);
+
 }  // namespace hullslam

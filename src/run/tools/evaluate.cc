@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/evaluate.h"
+
 #include <CLI/CLI.hpp>
 
 #include "run/command_line.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
-#include "run/tools/objects_command.h"
-#include "run/tools/trajectory_command.h"
 
 namespace hullslam {
-namespace {}  // namespace
-
 int RunEvaluate(int argc, char** argv) {
   CLI::App app("Evaluates finished runs.", argv[0]);
   AddVersionAndExitCodes(app);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/hullslam.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/view_images.h"
 #include "eval/object_metrics.h"
 #include "files/plausible.h"
+#include "hullslam/datasets/input_checks.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/known_pose_mapper.h"
@@ -18,21 +20,17 @@
 #include "objects/resolved_observation.h"
 #include "results/object_file.h"
 #include "results/output_folder.h"
+#include "results/summarize_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/given_groundtruth.h"
-#include "run/input_warnings.h"
 #include "run/interrupt.h"
-#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
+#include "run/more_outputs.h"
 #include "run/print_results.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/report_output.h"
-#include "run/summarize_run.h"
 #include "run/tools/commands.h"
-#include "run/tools/view_images.h"
 #include "scene/make_scene.h"
 #include "system/compose_trajectory.h"
 #include "system/frame_chooser.h"
@@ -167,7 +165,7 @@ MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   }
   const ImageSequence& sequence = inputs.opened.sequence;
   inputs.poses = AsLoaded(sequence, ReadTrajectory(arguments.poses));
-  PrintWarnings(sequence);
+  PrintWarnings(sequence.warnings);
   inputs.groundtruth = FindGroundtruth(sequence);
   return inputs;
 }
@@ -230,7 +228,8 @@ MappingEnd MapAll(const MapObjectsArguments& arguments, const OpenedDataset& ope
 }
 
 RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& inputs,
-                     const SequenceMasks& masks, const KnownPoseMapper& run, size_t without_pose) {
+                     const SequenceMasks& masks, const KnownPoseMapper& run, size_t without_pose,
+                     const MappingEnd& end) {
   RunSummary summary;
   summary.trajectory.frames = inputs.opened.sequence.frames.size();
   summary.trajectory.tracked = inputs.opened.sequence.frames.size() - without_pose;
@@ -240,10 +239,11 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.trajectory.alignment = "none";
   summary.peak_memory_mb = PeakMemoryMb();
   summary.map.keyframes = run.map().keyframes().size();
+  summary.provenance = SummarizeSettings(
+      inputs.opened.settings,
+      {.was_interrupted = end.was_interrupted, .input_failure = end.input_failure});
   summary.provenance.program = kProgram;
   summary.provenance.version = HULLSLAM_VERSION;
-  summary.provenance.settings_hash = HashSettings(inputs.opened.settings.options);
-  AddPreset(inputs.opened.settings, summary.provenance);
   summary.provenance.pipeline = "objects";
   summary.provenance.masks_format = masks.format();
   summary.provenance.sequence = arguments.sequence.string();
@@ -303,28 +303,24 @@ int RunMapObjects(int argc, char** argv) {
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {kProgram, arguments.overwrite});
-  WarnOfUnknownClasses(options.tracking, options.objects, masks);
-  WarnOfMisplacedMasks(sequence, camera, [&](size_t frame) { return masks.Read(frame); });
+  PrintWarnings(CheckClasses(options, [&] { return masks.Labels(); }));
+  PrintWarnings(CheckMaskPlaces(sequence, camera, [&](size_t frame) { return masks.Read(frame); }));
   if (!arguments.quiet) {
     PrintInputs(inputs, masks);
   }
   const auto start = std::chrono::steady_clock::now();
   KnownPoseMapper run(options);
   const MappingEnd end = MapAll(arguments, inputs.opened, views, masks, run);
-  for (const std::string& warning : run.warnings()) {
-    PrintError("warning: {}\n", warning);
-  }
+  PrintWarnings(run.warnings());
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectResults report = MeasuredObjects(run.map(), camera, arguments.sequence);
-  RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
+  RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose, end);
   ObjectCounts counts = run.counts();
   counts.frames_without_masks = masks.without_masks();
   counts.frames_with_masks = frames.size() - masks.without_masks();
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
-  summary.provenance.interrupted = end.was_interrupted;
-  summary.provenance.input_failure = end.input_failure;
   const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
   WriteOutputs(output, sequence, run, report, scene, summary);
   if (!arguments.quiet) {

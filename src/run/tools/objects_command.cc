@@ -1,60 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/objects_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
 
 #include "eval/object_metrics.h"
 #include "hullslam/util/error.h"
+#include "results/evaluation_json.h"
 #include "results/finished_run.h"
-#include "results/json_text.h"
 #include "results/object_file.h"
 #include "run/messages.h"
 #include "run/print_results.h"
-#include "run/tools/objects_truth.h"
+#include "run/tools/evaluate.h"
 
 namespace hullslam {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json ToJson(const ObjectResult& object) {
-  return {{"id", object.id.value},
-          {"class", object.label},
-          {"state", ToString(object.state)},
-          {"observations", object.fit.observations},
-          {"lines", object.fit.lines},
-          {"siou", OrNull(object.fit.siou)},
-          {"siou_mask", OrNull(object.fit.siou_mask)},
-          {"mtd_m2", OrNull(object.fit.mtd_m2)},
-          {"tangent_px", OrNull(object.fit.tangent_px)},
-          {"misfit_px", object.misfit_px}};
-}
-
-void PrintJson(const ObjectResults& report, const std::optional<TruthEvaluation>& truth) {
-  const MapFit fit = SummarizeFits(report);
-  Json each = Json::array();
-  for (const ObjectResult& object : report.objects) {
-    each.push_back(ToJson(object));
-  }
-  const Json json = {{"count", fit.objects},
-                     {"siou_mean", OrNull(fit.mean.siou)},
-                     {"siou_mask_mean", OrNull(fit.mean.siou_mask)},
-                     {"mtd_mean_m2", OrNull(fit.mean.mtd_m2)},
-                     {"tangent_mean_px", OrNull(fit.mean.tangent_px)},
-                     {"observations", fit.mean.observations},
-                     {"lines", fit.mean.lines},
-                     {"candidates", report.candidates},
-                     {"each", each},
-                     {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)}};
-  Print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
-}
 
 void PrintObject(const ObjectResult& object) {
   const ObjectFit& fit = object.fit;
@@ -141,7 +104,7 @@ void RunObjectsCommand(const ObjectsArguments& arguments) {
     truth = ReadAndEvaluateTruth(arguments, report, alignment);
   }
   if (arguments.json) {
-    PrintJson(report, truth);
+    Print("{}\n", EvaluationJson(report, truth));
     return;
   }
   PrintText(report, alignment);

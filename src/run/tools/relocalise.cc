@@ -2,18 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "eval/relocalisation.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/image_sequence.h"
@@ -23,24 +21,18 @@
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/given_groundtruth.h"
-#include "run/input_warnings.h"
 #include "run/interrupt.h"
-#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"
-#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
 constexpr double kMaxPoseGap = 0.1;  // s, between the two poses from which a pose is interpolated
-constexpr double kNear = 0.05;       // m
-constexpr double kFar = 0.1;         // m; a pose with a larger error counts as false
 
 struct RelocaliseArguments {
   std::filesystem::path sequence;
@@ -177,9 +169,9 @@ struct RelocaliseInputs {
 };
 
 // Chooses frames of the range that have a true pose.
-std::vector<size_t> ChooseQueries(const RelocaliseArguments& arguments,
-                                  const ImageSequence& sequence, const Trajectory& groundtruth,
-                                  const FrameRange& range) {
+std::vector<size_t> ChooseFrames(const RelocaliseArguments& arguments,
+                                 const ImageSequence& sequence, const Trajectory& groundtruth,
+                                 const FrameRange& range) {
   std::vector<size_t> frames;
   for (size_t i = range.first; i <= range.last; ++i) {
     if (InterpolatePose(groundtruth, sequence.frames[i].timestamp, kMaxPoseGap)) {
@@ -190,18 +182,12 @@ std::vector<size_t> ChooseQueries(const RelocaliseArguments& arguments,
     throw InputError(fmt::format("{}: no frame of --query-frames {} has a true pose",
                                  arguments.sequence.string(), arguments.query_frames));
   }
-  std::mt19937_64 random(arguments.seed);
-  const size_t count = std::min(arguments.queries, frames.size());
-  for (size_t i = 0; i < count; ++i) {
-    std::swap(frames[i], frames[i + random() % (frames.size() - i)]);
-  }
-  frames.resize(count);
-  std::sort(frames.begin(), frames.end());
-  return frames;
+  return ChooseQueries(std::move(frames), arguments.queries, arguments.seed);
 }
 
 RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
-  const FoundDataset found = FindGivenDataset(arguments.sequence, arguments.any);
+  const FoundDataset found =
+      FindDataset(arguments.sequence, arguments.any.sensor, arguments.any.choices);
   OpenedDataset opened = OpenInput(arguments, found, false);
   ImageSequence sequence = std::move(opened.sequence);
   Trajectory groundtruth = NeedGroundtruth(arguments, found, sequence);
@@ -211,7 +197,7 @@ RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
       ParseRange("--map-frames", arguments.map_frames, sequence.frames.size());
   const FrameRange query_frames =
       ParseRange("--query-frames", arguments.query_frames, sequence.frames.size());
-  std::vector<size_t> queries = ChooseQueries(arguments, sequence, groundtruth, query_frames);
+  std::vector<size_t> queries = ChooseFrames(arguments, sequence, groundtruth, query_frames);
   SequenceMasks masks(
       RequestOf(arguments.masks, arguments.masks_format, sequence, map_options.camera),
       MaskFrames(sequence));
@@ -251,10 +237,8 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
     PrintFailure("the program was interrupted");
     return std::nullopt;
   }
-  AteOptions options;
-  options.alignment = inputs.map_options.sensor == SensorKind::kMonocular ? AlignmentKind::kSim3
-                                                                          : AlignmentKind::kSe3;
-  const AteResult ate = EvaluateAte(inputs.groundtruth, system.trajectory(), options);
+  const AteResult ate = EvaluateAte(inputs.groundtruth, system.trajectory(),
+                                    {.alignment = AlignmentOf(inputs.map_options.sensor)});
   if (!ate.ok()) {
     PrintFailure("the map cannot be compared with the ground truth: " + ate.failure);
     return std::nullopt;
@@ -269,12 +253,6 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
         ate.errors.rmse);
   return MadeMap{system.map(), ate.reference_from_estimate};
 }
-
-struct QueryResult {
-  std::optional<RelocalisedPose> found;
-  double error = 0.0;         // m, of the position
-  double milliseconds = 0.0;  // without building the frame
-};
 
 QueryResult RunQuery(const RelocaliseInputs& inputs, const MadeMap& made,
                      const Relocaliser& relocaliser, System& builder, size_t frame) {
@@ -304,48 +282,16 @@ void PrintQuery(size_t frame, const QueryResult& result) {
   }
 }
 
-// A line about some of the `all` queries. The shares are those of all queries.
-void PrintLine(const std::string& name, const std::vector<QueryResult>& some, size_t all) {
-  size_t near = 0;
-  size_t far = 0;
-  size_t wrong = 0;
-  std::vector<double> times;
-  for (const QueryResult& result : some) {
-    times.push_back(result.milliseconds);
-    if (result.found) {
-      near += result.error <= kNear ? 1 : 0;
-      far += result.error <= kFar ? 1 : 0;
-      wrong += result.error > kFar ? 1 : 0;
-    }
-  }
-  const auto percent = [all](size_t count) {
-    return 100.0 * static_cast<double>(count) / static_cast<double>(all);
-  };
-  const std::string duration = times.empty()
-                                   ? fmt::format("{:>9}  {:>6}", "-", "-")
-                                   : fmt::format("{:>9.1f}  {:>6.1f}", Median(times),
-                                                 *std::max_element(times.begin(), times.end()));
-  Print("{:<9}  {:>7}  {:>6.1f} %  {:>7.1f} %  {:>5}  {}\n", name, some.size(), percent(near),
-        percent(far), wrong, duration);
-}
-
 void PrintResults(const std::vector<QueryResult>& results) {
-  const auto select = [&](const auto& is_wanted) {
-    std::vector<QueryResult> some;
-    std::copy_if(results.begin(), results.end(), std::back_inserter(some), is_wanted);
-    return some;
-  };
   Print("{:<9}  {:>7}  {:>8}  {:>9}  {:>5}  {:>9}  {:>6}\n", "method", "queries", "<= 5 cm",
         "<= 10 cm", "false", "median ms", "max ms");
-  for (const auto method : {RelocalisationMethod::kWords, RelocalisationMethod::kObjects}) {
-    PrintLine(ToString(method), select([method](const QueryResult& result) {
-                return result.found && result.found->method == method;
-              }),
-              results.size());
+  for (const QuerySummary& line : SummarizeQueries(results)) {
+    const std::string duration =
+        line.queries == 0 ? fmt::format("{:>9}  {:>6}", "-", "-")
+                          : fmt::format("{:>9.1f}  {:>6.1f}", line.median_ms, line.max_ms);
+    Print("{:<9}  {:>7}  {:>6.1f} %  {:>7.1f} %  {:>5}  {}\n", line.name, line.queries,
+          line.near_percent, line.far_percent, line.wrong, duration);
   }
-  PrintLine("not found", select([](const QueryResult& result) { return !result.found; }),
-            results.size());
-  PrintLine("all", results, results.size());
 }
 
 }  // namespace

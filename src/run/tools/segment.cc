@@ -3,26 +3,18 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <map>
 #include <string>
-#include <system_error>
-#include <utility>
-#include <vector>
 
-#include "files/atomic_file.h"
-#include "hullslam/masks/mask_source.h"
 #include "hullslam/segmentation/segmenter.h"
-#include "hullslam/util/error.h"
-#include "masks/yolo_text.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
 #include "run/interrupt.h"
+#include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
-#include "run/segment_record.h"
-#include "run/segmenter_arguments.h"
 #include "run/tools/commands.h"
+#include "segmentation/mask_folder.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -58,76 +50,19 @@ void AddOptions(CLI::App& app, SegmentArguments& arguments) {
   AddVersionAndExitCodes(app, "done", "the program failed or was interrupted");
 }
 
-struct SegmentCounts {
-  size_t frames = 0;                             // that are asked for
-  size_t done = 0;                               // that have a file now
-  size_t made = 0;                               // by this call
-  std::map<std::string, size_t> instances = {};  // by class, of this call
-  std::vector<std::string> unread = {};          // faults of images without masks
-  size_t failed = 0;                             // images that the network fails on
-  std::string first_failure = {};
-};
-
-// Writes the masks of a frame. A frame without instances gets an empty file, so that the next call
-// knows that it is done. A frame that the network fails on gets none.
-void SegmentFrame(const ImageSequence& sequence, const FramePaths& frame, const fs::path& file,
-                  Segmenter& segmenter, SegmentCounts& counts) {
-  cv::Mat image;
-  try {
-    image = sequence.load_colour(frame);
-  } catch (const InputError& error) {
-    counts.unread.emplace_back(error.what());
-    return;
-  }
-  std::vector<InstanceMask> masks;
-  try {
-    masks = segmenter.Segment(image);
-  } catch (const InputError& error) {
-    if (counts.failed++ == 0) {
-      counts.first_failure = fmt::format("{}: {}", frame.image.filename().string(), error.what());
-    }
-    return;
-  }
-  WriteFileAtomically(file, YoloText(masks, segmenter.class_names(), image.size()));
-  ++counts.made;
-  ++counts.done;
-  for (const InstanceMask& mask : masks) {
-    ++counts.instances[mask.label];
-  }
-}
-
-SegmentCounts SegmentAll(const SegmentArguments& arguments, const ImageSequence& sequence,
-                         Segmenter& segmenter) {
-  SegmentCounts counts;
-  std::vector<std::pair<const FramePaths*, fs::path>> left;
-  const std::vector<MaskFrame> names = MaskFrames(sequence);
-  for (size_t i = 0; i < names.size(); i += arguments.every) {
-    ++counts.frames;
-    const fs::path file = arguments.output / (names[i].stem + ".txt");
-    if (file.filename() == kClassNames) {
-      counts.unread.push_back(
-          fmt::format("{}: its masks would be in {}, which has the names of the "
-                      "classes",
-                      sequence.frames[i].image.string(), file.string()));
-      continue;
-    }
-    std::error_code error;
-    if (fs::exists(file, error)) {
-      ++counts.done;
-    } else {
-      left.emplace_back(&sequence.frames[i], file);
-    }
-  }
-  Progress progress(left.size(), arguments.quiet);
-  for (size_t i = 0; i < left.size() && !IsInterrupted(); ++i) {
-    SegmentFrame(sequence, *left[i].first, left[i].second, segmenter, counts);
+MaskFolderWork SegmentAll(const SegmentArguments& arguments, const ImageSequence& sequence,
+                          Segmenter& segmenter) {
+  MaskFolderWork work = FindMaskWork(arguments.output, sequence, arguments.every);
+  Progress progress(work.left.size(), arguments.quiet);
+  for (size_t i = 0; i < work.left.size() && !IsInterrupted(); ++i) {
+    MakeMaskFile(sequence, i, segmenter, work);
     progress.Show(i + 1);
   }
   progress.Clear();
-  return counts;
+  return work;
 }
 
-void PrintCounts(const SegmentArguments& arguments, const SegmentCounts& counts) {
+void PrintCounts(const SegmentArguments& arguments, const MaskFolderWork& counts) {
   for (const std::string& fault : counts.unread) {
     PrintError("warning: {}; this frame has no masks\n", fault);
   }
@@ -164,9 +99,7 @@ int RunSegment(int argc, char** argv) {
   }
   Segmenter segmenter(arguments.network, arguments.options);
   const ImageSequence sequence = OpenImages(arguments.input, arguments.choices);
-  for (const std::string& warning : sequence.warnings) {
-    PrintError("warning: {}\n", warning);
-  }
+  PrintWarnings(sequence.warnings);
   PrepareMaskFolder(arguments.output, {.input = arguments.input,
                                        .choices = arguments.choices,
                                        .sequence = sequence,
@@ -177,7 +110,7 @@ int RunSegment(int argc, char** argv) {
     Print("{}\n", segmenter.Describe());
   }
   CatchInterrupts();
-  const SegmentCounts counts = SegmentAll(arguments, sequence, segmenter);
+  const MaskFolderWork counts = SegmentAll(arguments, sequence, segmenter);
   PrintCounts(arguments, counts);
   if (IsInterrupted()) {
     PrintFailure("interrupted; the same command goes on from here");

@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include "features/extractor.h"
+#include "datasets/training_images.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
@@ -20,8 +18,6 @@
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"
-#include "sequences/image_file.h"
-#include "util/lower_case.h"
 #include "util/parallel_runner.h"
 
 namespace hullslam {
@@ -68,79 +64,19 @@ void AddOptions(CLI::App& app, TrainVocabularyArguments& arguments) {
                          "bad usage, an image that cannot be read, or no features in the images");
 }
 
-bool IsImage(const fs::path& path) {
-  const std::string extension = LowerCase(path.extension().string());
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-}
-
-std::vector<fs::path> ImagesOf(const fs::path& folder) {
-  std::vector<fs::path> images;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (IsImage(it->path())) {
-      images.push_back(it->path());
-    }
-  }
-  if (error) {
-    throw InputError(folder.string() + ": " + error.message());
-  }
-  if (images.empty()) {
-    throw InputError(folder.string() + ": has no PNG or JPEG images");
-  }
-  std::sort(images.begin(), images.end());
-  return images;
-}
-
-// The images in the order of the arguments. The images of a folder are sorted by name.
-std::vector<fs::path> ListImages(const std::vector<fs::path>& arguments) {
-  std::vector<fs::path> images;
-  for (const fs::path& argument : arguments) {
-    std::error_code error;
-    if (fs::is_directory(argument, error)) {
-      const std::vector<fs::path> inside = ImagesOf(argument);
-      images.insert(images.end(), inside.begin(), inside.end());
-    } else {
-      images.push_back(argument);
-    }
-  }
-  return images;
-}
-
-std::vector<Descriptor> DescriptorsOf(const fs::path& path, FeatureExtractor& extractor) {
-  constexpr int kLeastSide = 64;
-  const cv::Mat image = ReadGreyImage(path);
-  if (image.cols < kLeastSide || image.rows < kLeastSide) {
-    throw InputError(fmt::format("{}: {}x{} px, expected at least {}x{} px", path.string(),
-                                 image.cols, image.rows, kLeastSide, kLeastSide));
-  }
-  return extractor.Extract(image).descriptors;
-}
-
-// The descriptors of each image. After an interrupt the last images are missing.
-std::vector<std::vector<Descriptor>> ExtractAll(const std::vector<fs::path>& paths,
-                                                const TrainVocabularyArguments& arguments,
-                                                TaskRunner& runner) {
-  constexpr size_t kBatch = 16;  // images between two reports of the progress
-  std::vector<std::vector<Descriptor>> descriptors(paths.size());
-  Progress progress(paths.size(), arguments.quiet);
-  for (size_t begin = 0; begin < paths.size() && !IsInterrupted(); begin += kBatch) {
-    const size_t count = std::min(kBatch, paths.size() - begin);
-    runner.Run(count, [&](size_t i) {
-      FeatureExtractor extractor(arguments.features);
-      descriptors[begin + i] = DescriptorsOf(paths[begin + i], extractor);
-    });
-    for (size_t done = begin + 1; done <= begin + count; ++done) {
-      progress.Show(done);
-    }
-  }
-  progress.Clear();
-  return descriptors;
-}
-
 std::optional<Vocabulary> Train(const TrainVocabularyArguments& arguments,
                                 const std::vector<fs::path>& paths) {
   ParallelRunner runner(arguments.threads);
-  const std::vector<std::vector<Descriptor>> images = ExtractAll(paths, arguments, runner);
+  Progress progress(paths.size(), arguments.quiet);
+  size_t shown = 0;
+  const std::vector<std::vector<Descriptor>> images =
+      ExtractDescriptors(paths, arguments.features, runner, [&](size_t done) {
+        while (shown < done) {
+          progress.Show(++shown);
+        }
+        return !IsInterrupted();
+      });
+  progress.Clear();
   if (IsInterrupted()) {
     return std::nullopt;
   }
@@ -172,7 +108,7 @@ int RunTrainVocabulary(int argc, char** argv) {
     return kDone;
   }
   const VocabularyForm form = FormOf(arguments.output, arguments.form);
-  const std::vector<fs::path> images = ListImages(arguments.images);
+  const std::vector<fs::path> images = ListTrainingImages(arguments.images);
   CatchInterrupts();
   const std::optional<Vocabulary> vocabulary = Train(arguments, images);
   if (!vocabulary) {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/tools/trajectory_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,18 +10,14 @@
 #include "files/plausible.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/util/error.h"
+#include "results/evaluation_json.h"
 #include "results/pose_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
+#include "run/tools/evaluate.h"
 
 namespace hullslam {
 namespace {
-
-struct Evaluation {
-  AteResult ate;
-  RpeResult rpe;
-  double max_difference = 0.0;  // s
-};
 
 std::vector<double> StampsOf(const Trajectory& trajectory) {
   std::vector<double> stamps;
@@ -44,69 +37,13 @@ std::pair<Trajectory, Trajectory> ReadBoth(const TrajectoryArguments& arguments)
     SetStamps(arguments.estimate, StampsOf(reference.poses), estimate);
   }
   for (const PoseFile* const file : {&reference, &estimate}) {
-    for (const std::string& note : file->notes) {
-      PrintError("warning: {}\n", note);
-    }
+    PrintWarnings(file->notes);
   }
   return {std::move(reference.poses), std::move(estimate.poses)};
 }
 
-Evaluation Evaluate(const TrajectoryArguments& arguments) {
-  const auto [reference, estimate] = ReadBoth(arguments);
-  Evaluation evaluation;
-  evaluation.max_difference =
-      arguments.ate.max_difference.value_or(DefaultMaxDifference(arguments.ate.pairing));
-  evaluation.ate = EvaluateAte(reference, estimate, arguments.ate);
-  if (!evaluation.ate.ok()) {
-    throw InputError(arguments.estimate + ": " + evaluation.ate.failure);
-  }
-  if (const std::string missing = DescribeMissingPairs(evaluation.ate); !missing.empty()) {
-    PrintError("warning: {}\n", missing);
-  }
-  const RpeOptions options = {.scale = evaluation.ate.reference_from_estimate.scale,
-                              .pairing = arguments.ate.pairing,
-                              .max_difference = arguments.ate.max_difference};
-  evaluation.rpe = EvaluateRpe(reference, estimate, options);
-  if (const std::string swapped =
-          DescribeSwappedRotations(reference, estimate, evaluation.rpe, options);
-      !swapped.empty()) {
-    PrintError("warning: {}\n", swapped);
-  }
-  return evaluation;
-}
-
-nlohmann::ordered_json ToJson(const ErrorStatistics& errors) {
-  return {
-      {"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median}, {"max", errors.max}};
-}
-
-nlohmann::ordered_json ToJson(const RpeResult& rpe) {
-  if (!rpe.ok()) {
-    return nullptr;
-  }
-  return {{"delta_s", 1.0},
-          {"motions", rpe.motions},
-          {"translation_m", ToJson(rpe.translation)},
-          {"rotation_deg", ToJson(rpe.rotation)}};
-}
-
-void PrintJson(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
-  const AteResult& ate = evaluation.ate;
-  const nlohmann::ordered_json json = {
-      {"ate_m", ToJson(ate.errors)},
-      {"alignment", ToString(arguments.ate.alignment)},
-      {"scale", ate.reference_from_estimate.scale},
-      {"pairing", ToString(arguments.ate.pairing)},
-      {"max_difference_s", evaluation.max_difference},
-      {"pairs", ate.pairs},
-      {"coverage", ate.coverage},
-      {"estimate_poses", ate.estimate_poses},
-      {"groundtruth_poses", ate.reference_poses},
-      {"paired_span_s", ate.paired_span},
-      {"rpe", ToJson(evaluation.rpe)},
-      {"scale_drift", ate.scale_drift ? nlohmann::ordered_json(*ate.scale_drift)
-                                      : nlohmann::ordered_json(nullptr)}};
-  Print("{}\n", json.dump(2));
+double MaxDifference(const AteOptions& options) {
+  return options.max_difference.value_or(DefaultMaxDifference(options.pairing));
 }
 
 void PrintErrors(const char* name, const ErrorStatistics& errors, const char* unit) {
@@ -114,7 +51,7 @@ void PrintErrors(const char* name, const ErrorStatistics& errors, const char* un
         errors.mean, errors.median, errors.max, unit);
 }
 
-void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
+void PrintText(const TrajectoryErrors& evaluation) {
   const AteResult& ate = evaluation.ate;
   PrintErrors("ATE", ate.errors, "m");
   if (evaluation.rpe.ok()) {
@@ -126,9 +63,9 @@ void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluatio
   Print("{:<12} {} of the estimate, {} of the ground truth\n", "poses", ate.estimate_poses,
         ate.reference_poses);
   Print("{:<12} {} ({}'s rule within {} s), coverage {:.1f} % of the estimate, {:.1f} s\n", "pairs",
-        ate.pairs, ToString(arguments.ate.pairing), evaluation.max_difference, 100.0 * ate.coverage,
-        ate.paired_span);
-  Print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(arguments.ate.alignment),
+        ate.pairs, ToString(evaluation.options.pairing), MaxDifference(evaluation.options),
+        100.0 * ate.coverage, ate.paired_span);
+  Print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(evaluation.options.alignment),
         ate.reference_from_estimate.scale);
   if (ate.scale_drift) {
     Print("{:<12} {:.2f} % from the first to the last tenth of the pairs\n", "scale drift",
@@ -164,11 +101,16 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
 }
 
 void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
-  const Evaluation evaluation = Evaluate(arguments);
+  const auto [reference, estimate] = ReadBoth(arguments);
+  const TrajectoryErrors errors = EvaluateTrajectory(reference, estimate, arguments.ate);
+  if (!errors.ate.ok()) {
+    throw InputError(arguments.estimate + ": " + errors.ate.failure);
+  }
+  PrintWarnings(errors.warnings);
   if (arguments.json) {
-    PrintJson(arguments, evaluation);
+    Print("{}\n", TrajectoryErrorsJson(errors));
   } else {
-    PrintText(arguments, evaluation);
+    PrintText(errors);
   }
 }
 

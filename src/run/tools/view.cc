@@ -7,8 +7,8 @@
 #include "run/command_line.h"
 #include "run/live_output.h"
 #include "run/messages.h"
+#include "run/more_outputs.h"
 #include "run/program.h"
-#include "run/report_output.h"
 #include "run/tools/commands.h"
 #include "view/report.h"
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/system/relocaliser.h"
+
+namespace hullslam {
+
+// Chooses up to `count` of the frames at random, each at most once. The result is increasing.
+std::vector<size_t> ChooseQueries(std::vector<size_t> frames, size_t count, uint64_t seed);
+
+// A frame that was looked for in a map.
+struct QueryResult {
+  std::optional<RelocalisedPose> found;
+  double error = 0.0;         // m, of the position
+  double milliseconds = 0.0;  // without building the frame
+};
+
+// The queries with one outcome. The shares are those of all queries.
+struct QuerySummary {
+  std::string name;  // the method, "not found" or "all"
+  size_t queries = 0;
+  double near_percent = 0.0;  // found with an error of at most 5 cm
+  double far_percent = 0.0;   // at most 10 cm
+  size_t wrong = 0;           // found with a larger error
+  double median_ms = 0.0;     // 0 without queries
+  double max_ms = 0.0;
+};
+
+// One entry for each method, for the frames that were not found, and for all.
+std::vector<QuerySummary> SummarizeQueries(std::span<const QueryResult> results);
+
+}  // namespace hullslam

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/ask_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <system_error>
+
+#include "files/atomic_file.h"
+#include "files/npy_file.h"
+#include "files/read_text.h"
+#include "hullslam/util/error.h"
+#include "masks/mask_classes.h"
+#include "results/finished_run.h"
+#include "scene/question.h"
+#include "sequences/image_file.h"
+#include "util/printable.h"
+#include "util/trim.h"
+#include "view/answer_sheet.h"
+#include "view/view_of_run.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The classes of the objects, and those of the file of --classes.
+std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
+  std::set<std::string> labels;
+  for (const SceneObject& object : scene.objects) {
+    for (const auto& [label, share] : object.shares) {
+      labels.insert(label);
+    }
+  }
+  if (!file.empty()) {
+    const std::string text = ReadText(file);
+    CheckUtf8(file, text);
+    for (const std::string_view line : LinesOf(text)) {
+      if (const std::string label(Trim(line)); !label.empty()) {
+        labels.insert(Printable(label));
+      }
+    }
+  }
+  return labels;
+}
+
+std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
+  const FloatRows vector = ReadNpy(file);
+  if (vector.rows != 1) {
+    throw InputError(fmt::format("{}: {} rows, expected one vector", file.string(), vector.rows));
+  }
+  try {
+    return FindByEmbedding(scene, vector.values);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
+
+// The classes of the network that made the masks of the run: those of classes.txt beside the masks
+// if they are still there, else those of COCO, which most networks know.
+std::vector<std::string> NetworkClasses(const fs::path& source) {
+  std::error_code error;
+  try {
+    if (fs::exists(source / "summary.json", error)) {
+      const FinishedRun run = OpenFinishedRun(source);
+      if (const auto masks = run.Find(run.masks)) {
+        return ReadClasses(*masks);
+      }
+    }
+  } catch (const InputError&) {
+    // The answer does not need them.
+  }
+  return CocoClasses();
+}
+
+// A question about a class that the network knows has the answer that there is none if the map
+// lacks it. The message about an unknown word lists the classes of the map.
+AskedThing ParseKnown(const std::string& question, const std::set<std::string>& labels,
+                      const std::vector<std::string>& network) {
+  std::set<std::string> known(network.begin(), network.end());
+  known.insert(labels.begin(), labels.end());
+  try {
+    return ParseQuestion(question, known);
+  } catch (const InputError&) {
+    return ParseQuestion(question, labels);
+  }
+}
+
+}  // namespace
+
+std::vector<Answer> AskScene(const Scene& scene, const fs::path& source, const SceneQuery& query) {
+  const std::set<std::string> labels = KnownClasses(scene, query.classes);
+  const auto parse = [&](const std::string& question) {
+    return ParseKnown(question, labels, NetworkClasses(source));
+  };
+  if (!query.question.empty()) {
+    return AnswerQuestion(scene, parse(query.question));
+  }
+  if (query.like) {
+    return FindLike(scene, ObjectId(*query.like));
+  }
+  if (!query.vector.empty()) {
+    return AnswerVector(scene, query.vector);
+  }
+  AskedThing thing;
+  if (!query.label.empty()) {
+    thing = parse(query.label);
+    if (thing.kind != ThingKind::kClass || !thing.conditions.empty()) {
+      throw InputError("--class: '" + query.label + "', expected a class");
+    }
+  }
+  return query.within ? FindWithin(scene, thing.labels, *query.within, ObjectId(*query.of))
+                      : AnswerQuestion(scene, thing);
+}
+
+std::string AnswersJson(const Scene& scene, const std::vector<Answer>& answers) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Answer& answer : answers) {
+    const SceneObject& object = *scene.Find(answer.object);
+    const Eigen::Vector3d& center = object.ellipsoid.world_from_object.translation;
+    list.push_back({{"object", answer.object.value},
+                    {"class", object.label},
+                    {"score", answer.score},
+                    {"reason", answer.reason},
+                    {"centre", {center.x(), center.y(), center.z()}}});
+  }
+  const nlohmann::ordered_json json = {{"answers", list}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void WriteAnswerPicture(const fs::path& run, const std::vector<Answer>& answers,
+                        const fs::path& file) {
+  const ViewModel model = ViewOfRun(run);
+  const bool has_images =
+      std::any_of(model.objects.begin(), model.objects.end(),
+                  [](const ViewObject& object) { return !object.cutouts.empty(); });
+  if (!has_images) {
+    throw InputError(
+        fmt::format("--picture: the images of {} are not found, or the run has no "
+                    "views of its objects",
+                    model.sequence));
+  }
+  WriteFileAtomically(file, EncodeImage(DrawAnswers(answers, model), file.extension()));
+}
+
+}  // namespace hullslam
