@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Example 4: a network makes masks while frames are tracked. It is slower than the camera, so it
-// gets the newest image when it is free, and its masks are added when they are ready.
+// gets the image of the newest keyframe when it is free, and its masks are added when they are
+// ready.
 //
 //   04_late_masks SEQUENCE NETWORK
-#include <chrono>
 #include <cstdio>
-#include <future>
-#include <vector>
 
+#include "hullslam/segmentation/late_masks.h"
 #include "hullslam/segmentation/segmenter.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
@@ -23,22 +22,14 @@ void Run(const char* folder, const char* network) {
   hullslam::Segmenter segmenter(network);
 
   hullslam::System slam(settings, hullslam::PipelineKind::kThreaded);
-  slam.AwaitMasks(true);
-  hullslam::FrameId shown;  // the frame whose image the network has
-  std::future<std::vector<hullslam::InstanceMask>> masks;
+  hullslam::LateMasks masks(
+      hullslam::LateMasks::Pace::kNeverWait,
+      [&segmenter](const cv::Mat& image) { return segmenter.Segment(image); }, slam);
   for (const hullslam::FramePaths& paths : sequence.frames) {
     const hullslam::TrackedFrame result = slam.Track(sequence.load(paths, settings.camera));
-    if (masks.valid() && masks.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-      slam.AddMasks(shown, masks.get());
-    }
-    if (!masks.valid()) {
-      shown = result.frame;
-      masks = std::async(std::launch::async, [&segmenter, image = sequence.load_colour(paths)] {
-        return segmenter.Segment(image);
-      });
-    }
+    masks.AfterFrame(result, sequence.load_colour(paths));
   }
-  slam.AddMasks(shown, masks.get());
+  masks.Finish();
   slam.Finish();
 
   std::printf("%zu of %zu frames have a pose\n", slam.trajectory().size(), sequence.frames.size());

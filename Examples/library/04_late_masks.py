@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Example 4: a network makes masks while frames are tracked. It is slower than the camera, so it
-gets the newest image when it is free, and its masks are added when they are ready.
+gets the image of the newest keyframe when it is free, and its masks are added when they are
+ready.
 
     04_late_masks.py SEQUENCE NETWORK
 """
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import hullslam
 
@@ -18,18 +18,9 @@ def run(folder, network):
     segmenter = hullslam.Segmenter(network)
 
     slam = hullslam.System(settings, "rgbd", pipeline="threaded")
-    slam.await_masks(True)
-    worker = ThreadPoolExecutor(1)
-    shown = masks = None  # the frame whose image the network has, and its masks to come
+    segmenter.attach(slam, wait=False)
     for i, frame in enumerate(sequence):
-        result = slam.track(frame.image, frame.depth, timestamp=frame.timestamp)
-        if masks is not None and masks.done():
-            slam.add_masks(shown, masks.result())
-            masks = None
-        if masks is None:
-            shown = result.frame
-            masks = worker.submit(segmenter.segment, sequence.colour(i))
-    slam.add_masks(shown, masks.result())
+        slam.track(sequence.colour(i), frame.depth, timestamp=frame.timestamp)
     slam.finish()
 
     print(f"{len(slam.trajectory)} of {len(sequence)} frames have a pose")

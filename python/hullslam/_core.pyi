@@ -179,6 +179,11 @@ class Segmenter:
         """The masks of an image, best score first. image: uint8, (height, width) or
         (height, width, 3 or 4) with blue first.
         """
+    def attach(self, system: System, *, wait: bool = True) -> None:
+        """From now on, makes the masks of the keyframes that this System tracks without masks,
+        until it is reset. wait: track() waits for them; False: a thread makes them, and they
+        are added when they are ready. An image that the network fails on gets none.
+        """
     @property
     def class_names(self) -> list[str]:
         """The names of the classes by their numbers."""
@@ -234,6 +239,12 @@ class ImageSequence:
     @property
     def warnings(self) -> list[str]:
         """Faults in the files that do not end a run: list of str."""
+    def check(self, settings: SettingsTable, masks: MaskFiles | None = None) -> list[str]:
+        """What can be used but is probably not what was meant: list of str. Depth that is not
+        registered to the colour images, masks (MaskFiles) of other images, classes in the
+        settings that no mask has. Decodes a few frames. Raises InputError for masks of
+        rectified images.
+        """
     @property
     def groundtruth(self) -> Trajectory | None:
         """The true Trajectory; None if the data set has none."""

@@ -8,12 +8,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "hullslam/datasets/dataset.h"
+#include "hullslam/datasets/input_checks.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
@@ -183,6 +185,32 @@ MaskList ReadMasks(const MaskFiles& files, py::ssize_t index) {
   });
 }
 
+std::vector<std::string> CheckInput(FrameList& list, const SettingsTable& settings,
+                                    const MaskFiles* masks) {
+  return WithoutGil([&] {
+    const std::lock_guard lock(list.loading);
+    std::vector<std::string> warnings = CheckDepth(list.sequence, list.camera);
+    const auto add = [&](const std::vector<std::string>& more) {
+      warnings.insert(warnings.end(), more.begin(), more.end());
+    };
+    const auto read = [&](size_t frame) {
+      return masks == nullptr ? std::vector<InstanceMask>()
+                              : masks->source->Read(masks->frames.at(frame)).masks;
+    };
+    add(CheckMaskPlaces(list.sequence, list.camera, read));
+    add(CheckClasses(settings.options, [&] {
+      std::set<std::string> labels;
+      for (size_t frame = 0; frame < list.names.size(); ++frame) {
+        for (const InstanceMask& mask : read(frame)) {
+          labels.insert(mask.label);
+        }
+      }
+      return labels;
+    }));
+    return warnings;
+  });
+}
+
 void BindFrame(py::module_& module) {
   py::class_<SequenceFrame>(module, "SequenceFrame", "One decoded frame of a sequence.")
       .def_property_readonly(
@@ -270,6 +298,11 @@ void BindSequences(py::module_& module) {
       .def_property_readonly(
           "warnings", [](const FrameList& list) { return list.sequence.warnings; },
           "Faults in the files that do not end a run: list of str.")
+      .def("check", &CheckInput, py::arg("settings"), py::arg("masks") = py::none(),
+           "What can be used but is probably not what was meant: list of str. Depth that is not\n"
+           "registered to the colour images, masks (MaskFiles) of other images, classes in the\n"
+           "settings that no mask has. Decodes a few frames. Raises InputError for masks of\n"
+           "rectified images.")
       .def_property_readonly(
           "groundtruth",
           [](const FrameList& list) -> std::optional<PoseList> {

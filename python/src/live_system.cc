@@ -62,6 +62,7 @@ void LiveSystem::CloseAll() {
   const std::lock_guard lock(registry.mutex);
   for (LiveSystem* const live : registry.systems) {
     const std::lock_guard turn(live->mutex_);
+    live->late_masks_.reset();
     live->system_.reset();
   }
 }
@@ -70,6 +71,7 @@ void LiveSystem::Begin(SystemStart start) {
   if (start.localization_only && start.map.keyframes().empty()) {
     throw InputError("localization needs a map with keyframes, expected map=PATH");
   }
+  late_masks_.reset();
   system_ = std::make_unique<System>(options_, kind_, std::move(start));
   system_->SetFrameCallback([this](const FrameReport& report) { report_ = report; });
   taken_warnings_ = 0;
@@ -129,9 +131,13 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const Seco
                      " s after that of the last frame, expected seconds, not nanoseconds");
   }
   CheckSecond(options_.sensor, second);
+  const cv::Mat unmasked = late_masks_ != nullptr && masks.empty() ? image.clone() : cv::Mat();
   system.Track(timestamp, image, second.right.empty() ? second.depth : second.right,
                std::move(masks), std::move(right_masks));
   last_stamp_ = timestamp;
+  if (late_masks_ != nullptr) {
+    late_masks_->AfterFrame(report_.tracked, unmasked);
+  }
   return std::exchange(report_, {});
 }
 
@@ -154,11 +160,15 @@ void LiveSystem::Finish(const std::function<bool()>& is_over) {
     }
   };
   is_finished_ = true;
+  if (late_masks_ != nullptr) {
+    late_masks_->Finish();
+  }
   system.Finish(&cancellation, ask, ask);
 }
 
 void LiveSystem::Reset() {
   const std::lock_guard lock(mutex_);
+  late_masks_.reset();
   Open().Reset();
   taken_warnings_ = 0;
   last_stamp_.reset();
@@ -184,6 +194,11 @@ void LiveSystem::SetLocalizationOnly(bool is_on) {
 void LiveSystem::AwaitMasks(bool is_on) {
   const std::lock_guard lock(mutex_);
   Open().AwaitMasks(is_on);
+}
+
+void LiveSystem::MakeMasks(LateMasks::Pace pace, LateMasks::Maker make) {
+  const std::lock_guard lock(mutex_);
+  late_masks_ = std::make_unique<LateMasks>(pace, std::move(make), Open());
 }
 
 bool LiveSystem::AddMasks(int64_t frame, std::vector<InstanceMask> masks) {

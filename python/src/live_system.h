@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/segmentation/late_masks.h"
 #include "hullslam/system/system.h"
 
 namespace hullslam::python {
@@ -46,6 +47,9 @@ class LiveSystem {
   void SetLocalizationOnly(bool is_on);
 
   void AwaitMasks(bool is_on);
+  // From now on `make` makes the masks of keyframes that are tracked without masks, up to Reset()
+  // or Restart().
+  void MakeMasks(LateMasks::Pace pace, LateMasks::Maker make);
   // Throws InputError after Finish(), and otherwise as System::AddMasks does.
   bool AddMasks(int64_t frame, std::vector<InstanceMask> masks);
 
@@ -69,7 +73,8 @@ class LiveSystem {
   const PipelineKind kind_;
   mutable std::mutex mutex_;        // guards the members below
   std::unique_ptr<System> system_;  // null after CloseAll()
-  FrameReport report_;              // of the frame that is being tracked
+  std::unique_ptr<LateMasks> late_masks_;
+  FrameReport report_;  // of the frame that is being tracked
   std::optional<double> last_stamp_;
   size_t taken_warnings_ = 0;
   bool is_finished_ = false;

@@ -87,11 +87,11 @@ PYBIND11_MODULE(_core, module) {
   BindSettings(module);
   BindTrajectories(module);
   BindMasks(module);
-  BindSegmenter(module);
   BindSequences(module);
   BindRuns(module);
   BindMap(module);
   BindSystem(module);
+  BindSegmenter(module);
   BindKnownPoseMapper(module);
   RefuseUninitialisedObjects(module);
   ShortenTypeErrors(module);

@@ -28,6 +28,17 @@ def test_the_masks_of_an_image_are_found(network):
     assert len(segmenter.segment(image[:, :, 0])) == 0  # grey
 
 
+@pytest.mark.parametrize("wait", [True, False])
+def test_keyframes_of_a_system_get_masks(network, slam, wall, wait):
+    hullslam.Segmenter(network).attach(slam, wait=wait)
+    image = np.repeat(wall.images[0][:, :, np.newaxis], 3, axis=2)
+    image[80:160, 120:200] = (0, 0, 255)
+    slam.track(image, wall.depth, timestamp=0.0)
+    slam.finish()
+    assert slam.object_counts["frames_with_masks"] == 1
+    assert slam.object_counts["detections"] == 1
+
+
 def test_bad_networks_are_refused(network, tmp_path):
     with pytest.raises(hullslam.InputError, match="is a text"):
         hullslam.Segmenter(__file__)
