@@ -66,7 +66,6 @@ class MadeCorridor {
     frame->features.keypoints.shrink_to_fit();
     frame->features.descriptors.shrink_to_fit();
     frame->features.depth.shrink_to_fit();
-    frame->features.right_u.shrink_to_fit();
     const PinholeCamera::Bounds& bounds = sensor_.bounds;
     frame->features.grid = FeatureGrid(frame->features.keypoints,
                                        Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
@@ -152,7 +151,6 @@ class MadeCorridor {
     keypoint.level = level;
     features.descriptors.push_back(descriptor);
     features.depth.push_back(static_cast<float>(depth));
-    features.right_u.push_back(static_cast<float>(pixel.x() - sensor_.camera.bf / depth));
   }
 
   void AddDetections(const Rigid3& cam_from_world, std::mt19937_64& random, Frame& frame) const {

@@ -48,8 +48,6 @@ inline std::shared_ptr<const Frame> MakeBenchFrame(uint32_t number, const Sensor
     keypoint.undistorted = (pixel + Eigen::Vector2d(noise(random), noise(random))).cast<float>();
     features.descriptors.push_back({i, i * i, ~i, 7 * i});
     features.depth.push_back(static_cast<float>(in_cam.z()));
-    features.right_u.push_back(keypoint.undistorted.x() -
-                               static_cast<float>(sensor.camera.bf / in_cam.z()));
     seen.push_back(i);
   }
   return frame;

@@ -43,7 +43,7 @@ inline std::map<std::string, size_t> KeyframeBytes(const Map& map) {
         Block(keyframe.covisible) + Block(keyframe.children) + Block(keyframe.loops);
     bytes["keypoints"] += Block(features.keypoints);
     bytes["descriptors"] += Block(features.descriptors);
-    bytes["depths"] += Block(features.depth) + Block(features.right_u);
+    bytes["depths"] += Block(features.depth);
     bytes["feature grid"] +=
         sizeof(uint16_t) * (features.size() + 32 * 24 + 1) + 2 * bytes_internal::kOverhead;
     bytes["depth grid"] +=

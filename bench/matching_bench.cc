@@ -53,7 +53,6 @@ Frames MakeFrames() {
     frames.a.descriptors.push_back({random(), random(), random(), random()});
   }
   frames.a.depth.assign(kKeypoints, 0.0f);
-  frames.a.right_u.assign(kKeypoints, -1.0f);
   frames.b = Moved(frames.a, random);
   for (FrameFeatures* features : {&frames.a, &frames.b}) {
     features->grid = FeatureGrid(features->keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});

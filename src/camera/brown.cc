@@ -25,6 +25,13 @@ Radial RadialAt(const PinholeCamera& camera, double r2) {
 
 }  // namespace
 
+std::array<double, 8> BrownCoefficients(const PinholeCamera& camera) {
+  if (camera.lens != LensModel::kBrown) {
+    return {};
+  }
+  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6};
+}
+
 LensPoint DistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& point) {
   const double x = point.x();
   const double y = point.y();

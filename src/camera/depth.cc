@@ -60,8 +60,4 @@ float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double
   return std::isfinite(metres) && metres > 0.0f ? metres : 0.0f;
 }
 
-float VirtualRight(float u, float depth, double bf) {
-  return depth > 0.0f ? static_cast<float>(u - bf / depth) : -1.0f;
-}
-
 }  // namespace hullslam

@@ -71,11 +71,17 @@ bool PinholeCamera::IsDistorted() const {
 }
 
 Eigen::Vector2d PinholeCamera::Distort(const Eigen::Vector2d& undistorted) const {
+  if (!IsDistorted()) {
+    return undistorted;
+  }
   const Eigen::Vector2d distorted = DistortNormalized(*this, Normalized(*this, undistorted)).point;
   return {fx * distorted.x() + cx, fy * distorted.y() + cy};
 }
 
 Eigen::Matrix2d PinholeCamera::DistortionJacobian(const Eigen::Vector2d& undistorted) const {
+  if (!IsDistorted()) {
+    return Eigen::Matrix2d::Identity();
+  }
   const Eigen::Vector2d focal(fx, fy);
   return focal.asDiagonal() * DistortNormalized(*this, Normalized(*this, undistorted)).jacobian *
          focal.cwiseInverse().asDiagonal();
@@ -95,6 +101,16 @@ bool PinholeCamera::SeesRaw(const Eigen::Vector2d& raw) const {
   const bool is_inside = raw.x() >= 0.0 && raw.y() >= 0.0 && raw.x() < width && raw.y() < height;
   return is_inside &&
          (!IsFisheye() || Normalized(*this, raw).norm() <= RadiusOfAngle(*this, kMostAngle));
+}
+
+bool PinholeCamera::IsWide() const {
+  if (!IsFisheye()) {
+    return false;
+  }
+  const double right = width - 1;
+  const double bottom = height - 1;
+  return !SeesRaw({0.0, 0.0}) || !SeesRaw({right, 0.0}) || !SeesRaw({0.0, bottom}) ||
+         !SeesRaw({right, bottom});
 }
 
 double PinholeCamera::FoldRadius() const {

@@ -15,38 +15,28 @@
 namespace hullslam {
 namespace {
 
-// A pair as rays of depth 1, with the variances and the covariance of the rays' x and y.
+// A pair as rays of depth 1, with the covariances of the rays' x and y.
 struct RayPair {
   Eigen::Vector3d a;
   Eigen::Vector3d b;
-  Eigen::Vector2d variance_a;
-  Eigen::Vector2d variance_b;
-  double covariance_a = 0.0;
-  double covariance_b = 0.0;
+  Eigen::Matrix2d covariance_a;
+  Eigen::Matrix2d covariance_b;
 };
 
 // The errors of a ray follow from those of its raw pixel.
-void SpreadByLens(const PinholeCamera& camera, const Eigen::Vector2d& pixel, double sigma,
-                  Eigen::Vector2d& variance, double& covariance) {
+Eigen::Matrix2d RayCovariance(const PinholeCamera& camera, const Eigen::Vector2d& pixel,
+                              double sigma) {
   const Eigen::Matrix2d ray_by_raw =
       Eigen::Vector2d(1.0 / camera.fx, 1.0 / camera.fy).asDiagonal() *
       camera.DistortionJacobian(pixel).inverse();
-  const Eigen::Matrix2d spread = sigma * sigma * ray_by_raw * ray_by_raw.transpose();
-  variance = spread.diagonal();
-  covariance = spread(0, 1);
+  return sigma * sigma * ray_by_raw * ray_by_raw.transpose();
 }
 
 RayPair ToRays(const PinholeCamera& camera, const PixelPair& pair) {
-  const Eigen::Array2d focal(camera.fx, camera.fy);
-  RayPair rays{.a = camera.Unproject(pair.a, 1.0),
-               .b = camera.Unproject(pair.b, 1.0),
-               .variance_a = (pair.sigma_a / focal).square(),
-               .variance_b = (pair.sigma_b / focal).square()};
-  if (camera.IsFisheye()) {
-    SpreadByLens(camera, pair.a, pair.sigma_a, rays.variance_a, rays.covariance_a);
-    SpreadByLens(camera, pair.b, pair.sigma_b, rays.variance_b, rays.covariance_b);
-  }
-  return rays;
+  return {.a = camera.Unproject(pair.a, 1.0),
+          .b = camera.Unproject(pair.b, 1.0),
+          .covariance_a = RayCovariance(camera, pair.a, pair.sigma_a),
+          .covariance_b = RayCovariance(camera, pair.b, pair.sigma_b)};
 }
 
 // The signed square root of SampsonError.
@@ -56,12 +46,10 @@ T SampsonDistance(const RayPair& pair, const Eigen::Matrix<T, 3, 3>& rotation,
   const Eigen::Matrix<T, 3, 1> b = pair.b.cast<T>();
   const Eigen::Matrix<T, 3, 1> line_in_b = translation.cross(rotation * pair.a.cast<T>());
   const Eigen::Matrix<T, 3, 1> line_in_a = rotation.transpose() * b.cross(translation);
-  T variance = line_in_a.template head<2>().cwiseAbs2().dot(pair.variance_a.cast<T>()) +
-               line_in_b.template head<2>().cwiseAbs2().dot(pair.variance_b.cast<T>());
-  if (pair.covariance_a != 0.0 || pair.covariance_b != 0.0) {
-    variance += 2.0 * (pair.covariance_a * line_in_a[0] * line_in_a[1] +
-                       pair.covariance_b * line_in_b[0] * line_in_b[1]);
-  }
+  const Eigen::Matrix<T, 2, 1> normal_in_a = line_in_a.template head<2>();
+  const Eigen::Matrix<T, 2, 1> normal_in_b = line_in_b.template head<2>();
+  const T variance = normal_in_a.dot(pair.covariance_a.cast<T>() * normal_in_a) +
+                     normal_in_b.dot(pair.covariance_b.cast<T>() * normal_in_b);
   // A pair at both epipoles has no epipolar line; it agrees with the motion.
   constexpr double kTiny = 1e-30;
   return b.dot(line_in_b) / sqrt(variance + kTiny);

@@ -50,20 +50,19 @@ struct CvPairs {
   double sigma = 1.0;  // px
 };
 
-// The stretch of the undistorted image of a fisheye lens at a pixel, as a factor on the noise.
+// The stretch of the undistorted image at a pixel, as a factor on the noise.
 double StretchAt(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
   return 1.0 / std::sqrt(camera.DistortionJacobian(pixel).determinant());
 }
 
 // OpenCV's estimators have one threshold for all pairs, so they get the pairs of the inner part of
-// a fisheye image, where the stretch is small, if these are enough. All pairs judge the motions.
+// the image, where the stretch is small, if these are enough. All pairs judge the motions.
 std::vector<PixelPair> PairsForSamples(const PinholeCamera& camera,
                                        std::span<const PixelPair> pairs) {
   constexpr double kMostStretch = 2.0;
   std::vector<PixelPair> inner;
   for (const PixelPair& pair : pairs) {
-    if (camera.IsFisheye() && StretchAt(camera, pair.a) < kMostStretch &&
-        StretchAt(camera, pair.b) < kMostStretch) {
+    if (StretchAt(camera, pair.a) < kMostStretch && StretchAt(camera, pair.b) < kMostStretch) {
       inner.push_back(pair);
     }
   }
@@ -143,10 +142,7 @@ struct Hypothesis {
 double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,
                     const Eigen::Vector2d& pixel, double sigma) {
   const Eigen::Vector2d error = camera.Project(point) - pixel;
-  const double squared = camera.IsFisheye()
-                             ? (camera.DistortionJacobian(pixel) * error).squaredNorm()
-                             : error.squaredNorm();
-  return squared / (sigma * sigma);
+  return (camera.DistortionJacobian(pixel) * error).squaredNorm() / (sigma * sigma);
 }
 
 Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs,

@@ -80,10 +80,10 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
-// The pixels of the undistorted image of a fisheye lens are no measure, so solid angles are.
+// The pixels of the undistorted image of a wide lens are no measure, so solid angles are.
 double OverlapOf(const Polygon& outline, const Polygon& polygon, const PinholeCamera& camera) {
-  return camera.IsFisheye() ? OverlapOnSphere(camera, outline, polygon)
-                            : IntersectionOverUnion(outline, polygon);
+  return camera.IsWide() ? OverlapOnSphere(camera, outline, polygon)
+                         : IntersectionOverUnion(outline, polygon);
 }
 
 double OverlapWithHull(const Polygon& polygon, const ObservationResult& observation,

@@ -49,9 +49,14 @@ ColmapImage MakeRightImage(const KeyframeImage& image, uint32_t first, double ba
                    .cam_from_world = right_from_left * keyframe.cam_from_world};
   const FrameFeatures& features = keyframe.frame->features;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-    const Eigen::Vector2d pixel = view.FromUndistorted(
-        Eigen::Vector2f(features.right_u[i], features.keypoints[i].undistorted.y()).cast<double>());
-    if (features.depth[i] > 0.0F && keyframe.landmarks[i].IsValid() && view.Contains(pixel)) {
+    if (!(features.depth[i] > 0.0F) || !keyframe.landmarks[i].IsValid()) {
+      continue;
+    }
+    const double disparity = baseline * view.camera().fx / static_cast<double>(features.depth[i]);
+    const Eigen::Vector2d pixel =
+        view.FromUndistorted(features.keypoints[i].undistorted.cast<double>()) -
+        Eigen::Vector2d(disparity, 0.0);
+    if (view.Contains(pixel)) {
       landmarks[keyframe.landmarks[i]] = static_cast<uint32_t>(made.keypoints.size());
       made.keypoints.push_back({pixel + Eigen::Vector2d::Constant(kHalfPixel)});
     }

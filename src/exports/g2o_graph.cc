@@ -42,7 +42,7 @@ PointMeasurement MeasurementOf(const Frame& frame, size_t keypoint, const Sensor
   PointMeasurement measurement = PointMeasurement::Create(
       seen.undistorted.cast<double>(), sensor.levels.scale[static_cast<size_t>(seen.level)],
       depth > 0.0 ? std::optional(sensor.camera.bf / depth) : std::nullopt, sensor.depth_error);
-  if (sensor.camera.IsFisheye()) {
+  if (sensor.camera.IsDistorted()) {
     measurement.TakeLens(sensor.camera.DistortionJacobian(seen.undistorted.cast<double>()));
   }
   return measurement;

@@ -22,7 +22,6 @@ FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uin
   return {.keypoints = Select(features.keypoints, kept),
           .descriptors = Select(features.descriptors, kept),
           .depth = Select(features.depth, kept),
-          .right_u = Select(features.right_u, kept),
           .grid = features.grid.Select(kept)};
 }
 

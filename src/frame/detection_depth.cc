@@ -108,7 +108,7 @@ std::vector<Eigen::Vector3d> DepthPoints(const MaskDepth& view, const MaskRegion
       }
       const double depth = view.AtRaw(raw);
       const PinholeCamera& camera = view.camera.camera();
-      if (depth > 0.0 && (!camera.IsFisheye() || camera.SeesRaw(raw))) {
+      if (depth > 0.0 && camera.SeesRaw(raw)) {
         points.push_back(camera.Unproject(camera.Undistort(raw), depth));
       }
     }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/frame_builder.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -11,63 +9,11 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
-#include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
-#include "frame/keypoint_depth.h"
 #include "frame/keypoint_grid.h"
-#include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
-
-void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
-  if (image.size() != size) {
-    throw InputError(
-        fmt::format("the {} is {}x{} px, expected Camera.width x Camera.height, {}x{} px", name,
-                    image.cols, image.rows, size.width, size.height));
-  }
-}
-
-// Throws InputError unless the images are those of the sensor.
-void CheckImages(const ImageInput& image, const Sensor& sensor) {
-  const cv::Size size(sensor.camera.width, sensor.camera.height);
-  CheckSize("image", image.grey, size);
-  if (image.grey.type() != CV_8UC1) {
-    throw InputError("the image is not CV_8UC1");
-  }
-  if (sensor.kind == SensorKind::kRgbd) {
-    if (image.depth.empty()) {
-      throw InputError(
-          "there is no depth image, expected one of an RGB-D camera; without depth, "
-          "SystemOptions::sensor is SensorKind::kMonocular");
-    }
-    CheckDepthImage(image.depth, sensor.camera);
-  } else if (!image.depth.empty()) {
-    throw InputError(sensor.IsMonocular()
-                         ? "there is a depth image, expected none from a monocular camera"
-                         : "there is a depth image, expected the right image of a stereo camera");
-  }
-  if (sensor.kind == SensorKind::kStereo) {
-    if (image.right.empty()) {
-      throw InputError("there is no right image, expected one of a stereo camera");
-    }
-    CheckSize("right image", image.right, size);
-    if (image.right.type() != CV_8UC1) {
-      throw InputError("the right image is not CV_8UC1");
-    }
-  } else if (!image.right.empty() || !image.right_masks.empty()) {
-    throw InputError(
-        fmt::format("there {}, expected none without a stereo camera",
-                    image.right.empty() ? "are masks of a right image" : "is a right image"));
-  }
-}
-
-std::vector<float> DepthsOf(std::vector<float> disparities, const PinholeCamera& camera) {
-  for (float& value : disparities) {
-    value = value > 0.0F ? static_cast<float>(camera.bf / static_cast<double>(value)) : 0.0F;
-  }
-  return disparities;
-}
 
 // The pixels of the masks and those about them.
 cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
@@ -91,13 +37,11 @@ cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
          image;
 }
 
-// Adds the undistorted keypoints and their columns in the right image. The depths are added before.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
                   TaskRunner& runner, FrameFeatures& features) {
   constexpr size_t kInTask = 256;
   const size_t count = keypoints.size();
   features.keypoints.resize(count);
-  features.right_u.resize(count);
   runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
     for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
       const RawKeypoint& keypoint = keypoints[i];
@@ -105,8 +49,6 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
           camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
       features.keypoints[i] = {
           .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
-      features.right_u[i] = VirtualRight(static_cast<float>(camera.FarRight(undistorted.x())),
-                                         features.depth[i], camera.bf);
     }
   });
 }
@@ -124,14 +66,14 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
   return words;
 }
 
-// The pixels that are 0 in the mask of all images, and those beyond the largest angle of a fisheye
+// The pixels that are 0 in the mask of all images, and those beyond the largest angle of a wide
 // lens; empty if there are none.
 cv::Mat UnusedPixels(const PinholeCamera& camera, const cv::Mat& mask_all) {
   cv::Mat unused;
   if (!mask_all.empty()) {
     unused = mask_all == 0;
   }
-  if (camera.IsFisheye()) {
+  if (camera.IsWide()) {
     if (unused.empty()) {
       unused = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
     }
@@ -158,18 +100,6 @@ FeatureOptions FeaturesOf(const Sensor& sensor, FeatureOptions features) {
 
 }  // namespace
 
-void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera) {
-  if (!HaveSameShape(depth.size(), {camera.width, camera.height})) {
-    throw InputError(
-        fmt::format("the depth image is {}x{} px, expected the shape of the image, Camera.width x "
-                    "Camera.height, {}x{} px",
-                    depth.cols, depth.rows, camera.width, camera.height));
-  }
-  if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
-    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
-  }
-}
-
 FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            const FeatureOptions& features,
                            const std::optional<DetectionOptions>& detection,
@@ -179,21 +109,20 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       depth_(depth),
       check_(sensor, depth),
       extractor_(FeaturesOf(sensor, features)),
+      source_(MakeDepthSource(sensor, depth, FeaturesOf(sensor, features), check_)),
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
       remove_dynamic_(remove_dynamic),
       unused_(UnusedPixels(sensor.camera, sensor.mask_all)),
       unused_right_(UnusedPixels(sensor.camera, sensor.mask_all_right)) {
-  if (sensor.kind == SensorKind::kStereo) {
-    stereo_.emplace(FeaturesOf(sensor, features), sensor.camera);
-  }
   if (detection) {
     detector_.emplace(sensor, depth, *detection, dynamic_classes_);
   }
 }
 
 BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
-  CheckImages(image, sensor_);
+  CheckGreyImage("image", image.grey, sensor_.camera);
+  source_->CheckImages(image);
   check_.CheckDepth(image.depth);
   if (image.depth.empty() || image.depth.size() == image.grey.size()) {
     return BuildFitted(image, runner, awaits_masks);
@@ -218,7 +147,7 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
   if (detector_) {
     const cv::Rect all(0, 0, image.grey.cols, image.grey.rows);
     const cv::Rect region = is_awaiting ? all : RegionOf(image.masks, image.grey.size());
-    input.depth = stereo_ ? DepthIn(region, image, built.frame->features, runner) : image.depth;
+    input.depth = source_->DepthIn(region, image, built.frame->features.depth, runner);
   }
   if (is_awaiting) {
     input.depth = input.depth.clone();  // the caller may write the next image there
@@ -232,20 +161,6 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
   return built;
-}
-
-// The keypoints on an object are too few to show its surface.
-cv::Mat FrameBuilder::DepthIn(const cv::Rect& region, const ImageInput& image,
-                              const FrameFeatures& features, TaskRunner& runner) const {
-  if (region.empty()) {
-    return {};
-  }
-  std::vector<float> disparities;
-  disparities.reserve(features.depth.size());
-  for (const float depth : features.depth) {
-    disparities.push_back(depth > 0.0F ? static_cast<float>(sensor_.camera.bf) / depth : 0.0F);
-  }
-  return CoarseDepth(image.grey, image.right, sensor_.camera, {region, disparities}, runner);
 }
 
 void FrameBuilder::AddDetections(std::span<const InstanceMask> masks, const DetectionInput& input,
@@ -271,18 +186,6 @@ std::vector<uint32_t> FrameBuilder::DynamicKeypoints(std::span<const InstanceMas
   return dynamic;
 }
 
-// 0 where the depth is unknown.
-std::vector<float> FrameBuilder::SampleDepths(std::span<const RawKeypoint> keypoints,
-                                              const cv::Mat& depth) const {
-  std::vector<float> depths(keypoints.size(), 0.0f);
-  for (size_t i = 0; i < keypoints.size() && !depth.empty(); ++i) {
-    const auto level = static_cast<size_t>(keypoints[i].level);
-    depths[i] = KeypointDepth(depth, keypoints[i], static_cast<double>(sensor_.levels.scale[level]),
-                              sensor_.camera.bf, depth_);
-  }
-  return depths;
-}
-
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
   // The keypoints are chosen from what is left, so that as many are found as in other images.
@@ -290,21 +193,13 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
     return remove_dynamic_ ? Union(unused, DynamicMask(masks, dynamic_classes_, image.grey.size()))
                            : unused;
   };
-  const cv::Mat ignored = ignored_by(unused_, image.masks);
-  ExtractedFeatures extracted =
-      stereo_ ? stereo_->Extract(extractor_, image.grey, image.right, runner,
-                                 {ignored, ignored_by(unused_right_, image.right_masks)})
-              : extractor_.Extract(image.grey, runner, ignored);
-  features.depth = stereo_
-                       ? DepthsOf(stereo_->FindDisparities(extracted, extractor_.pyramid(), runner),
-                                  sensor_.camera)
-                       : SampleDepths(extracted.keypoints, image.depth);
-  if (stereo_) {
-    check_.CheckPair(extracted, stereo_->right(), features.depth);
-  }
+  auto [extracted, depths] = source_->Extract(
+      extractor_, image,
+      {ignored_by(unused_, image.masks), ignored_by(unused_right_, image.right_masks)}, runner);
+  features.depth = std::move(depths);
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
-  features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera, sensor_.bounds);
+  features.grid = MakeKeypointGrid(features.keypoints, sensor_.camera);
   return std::move(extracted.keypoints);
 }
 

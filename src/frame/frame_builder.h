@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "features/extractor.h"
+#include "frame/depth_source.h"
 #include "frame/frame_detector.h"
 #include "frame/input_check.h"
-#include "frame/stereo_features.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/frame/built_frame.h"
@@ -23,12 +23,8 @@
 
 namespace hullslam {
 
-// Throws InputError unless the depth image has the shape of the image of the camera and a type that
-// ImageInput allows.
-void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera);
-
-// Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
-// right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
+// Turns images into frames: extracts and undistorts keypoints, finds their
+// depths, builds the grid, and makes the detections of objects. Things of the dynamic
 // classes give no detections, and no keypoints are chosen on them unless this is switched off, nor
 // at pixels that Sensor::mask_all ignores. With a vocabulary it looks up the word of each keypoint.
 class FrameBuilder {
@@ -63,20 +59,14 @@ class FrameBuilder {
  private:
   // `image` has depth of its own size.
   BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks);
-  std::vector<float> SampleDepths(std::span<const RawKeypoint> keypoints,
-                                  const cv::Mat& depth) const;  // m
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);
-  // A depth image of a stereo camera, only in a region of the image.
-  cv::Mat DepthIn(const cv::Rect& region, const ImageInput& image, const FrameFeatures& features,
-                  TaskRunner& runner) const;
-
   const Sensor& sensor_;
   DepthOptions depth_;
   InputCheck check_;
   FeatureExtractor extractor_;
-  std::optional<StereoFeatures> stereo_;  // only for a stereo camera
+  std::unique_ptr<DepthSource> source_;
   std::optional<FrameDetector> detector_;
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;

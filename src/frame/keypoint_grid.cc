@@ -6,19 +6,17 @@
 
 namespace hullslam {
 
-FeatureGrid MakeKeypointGrid(std::span<const Keypoint> keypoints, const PinholeCamera& camera,
-                             const PinholeCamera::Bounds& bounds) {
-  if (!camera.IsFisheye()) {
-    return {keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
-            Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>()};
+FeatureGrid MakeKeypointGrid(std::span<const Keypoint> keypoints, const PinholeCamera& camera) {
+  const Eigen::Vector2f size = Eigen::Vector2i(camera.width, camera.height).cast<float>();
+  if (!camera.IsDistorted()) {
+    return {keypoints, Eigen::Vector2f::Zero(), size};
   }
   std::vector<Eigen::Vector2f> positions;
   positions.reserve(keypoints.size());
   for (const Keypoint& keypoint : keypoints) {
     positions.emplace_back(camera.Distort(keypoint.undistorted.cast<double>()).cast<float>());
   }
-  return {keypoints, std::move(positions),
-          Eigen::Vector2i(camera.width, camera.height).cast<float>()};
+  return {keypoints, std::move(positions), size};
 }
 
 }  // namespace hullslam

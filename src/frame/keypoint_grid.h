@@ -8,9 +8,7 @@
 
 namespace hullslam {
 
-// The grid of the keypoints of an image: in the undistorted image, whose bounds are given, or in
-// the raw image of a fisheye lens (Sensor::ToGrid).
-FeatureGrid MakeKeypointGrid(std::span<const Keypoint> keypoints, const PinholeCamera& camera,
-                             const PinholeCamera::Bounds& bounds);
+// The grid of the keypoints of an image, in its raw pixels.
+FeatureGrid MakeKeypointGrid(std::span<const Keypoint> keypoints, const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -34,7 +34,7 @@ MaskCamera::MaskCamera(const PinholeCamera& camera) : camera_(camera), focal_(ca
 MaskCamera::MaskCamera(const PinholeCamera& camera,
                        std::span<const std::vector<Eigen::Vector2d>> outlines)
     : MaskCamera(camera) {
-  if (!camera.IsFisheye()) {
+  if (!camera.IsWide()) {
     return;
   }
   is_turned_ = true;

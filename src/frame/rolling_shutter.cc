@@ -168,12 +168,9 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
   for (size_t i = 0; i < features.size(); ++i) {
     Eigen::Vector2f& pixel = features.keypoints[i].undistorted;
     const Eigen::Vector2f moved = undo.Move(pixel.cast<double>(), inverse_depths[i]).cast<float>();
-    if (features.depth[i] > 0.0F && !camera.IsFisheye()) {
-      features.right_u[i] += moved.x() - pixel.x();
-    }
     pixel = moved;
   }
-  features.grid = MakeKeypointGrid(features.keypoints, camera, sensor.bounds);
+  features.grid = MakeKeypointGrid(features.keypoints, camera);
   auto motion = std::make_shared<ShutterMotion>();
   motion->velocity = velocity;
   motion->inverse_depths.assign(inverse_depths.begin(), inverse_depths.end());

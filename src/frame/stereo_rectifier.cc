@@ -9,6 +9,7 @@
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "camera/brown.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -16,15 +17,6 @@ namespace {
 
 cv::Matx33d IntrinsicsOf(const PinholeCamera& camera) {
   return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
-}
-
-// For the size of the rectified image. That of a fisheye lens keeps the focal length: all of its
-// field of view would not fit.
-cv::Vec<double, 8> DistortionOf(const PinholeCamera& camera) {
-  if (camera.IsFisheye()) {
-    return {};
-  }
-  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6};
 }
 
 bool HaveSameIntrinsics(const PinholeCamera& a, const PinholeCamera& b) {
@@ -103,11 +95,15 @@ StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std
   cv::Matx34d left_projection;
   cv::Matx34d right_projection;
   cv::Matx44d to_depth;
-  cv::stereoRectify(IntrinsicsOf(calibration.left), DistortionOf(calibration.left),
-                    IntrinsicsOf(calibration.right), DistortionOf(calibration.right), size,
-                    rotation, cv::Vec3d(t.x(), t.y(), t.z()), left_rotation, right_rotation,
-                    left_projection, right_projection, to_depth, cv::CALIB_ZERO_DISPARITY, 0.0,
-                    size);
+  // For the size of the rectified image. A wide lens keeps the focal length: all of its field of
+  // view would not fit.
+  const auto distortion = [](const PinholeCamera& camera) {
+    return cv::Vec<double, 8>(BrownCoefficients(camera).data());
+  };
+  cv::stereoRectify(IntrinsicsOf(calibration.left), distortion(calibration.left),
+                    IntrinsicsOf(calibration.right), distortion(calibration.right), size, rotation,
+                    cv::Vec3d(t.x(), t.y(), t.z()), left_rotation, right_rotation, left_projection,
+                    right_projection, to_depth, cv::CALIB_ZERO_DISPARITY, 0.0, size);
   camera_ = {.fx = left_projection(0, 0),
              .fy = left_projection(1, 1),
              .cx = left_projection(0, 2),

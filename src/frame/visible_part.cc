@@ -9,12 +9,8 @@ namespace hullslam {
 std::vector<Eigen::Vector2d> VisiblePart(const std::vector<Eigen::Vector2d>& polygon,
                                          const PinholeCamera& camera,
                                          const Eigen::AlignedBox2d& image) {
-  if (!camera.IsFisheye()) {
-    return ClipToBox(polygon, image);
-  }
   std::vector<Eigen::Vector2d> raw;
-  raw.reserve(polygon.size());
-  for (const Eigen::Vector2d& point : polygon) {
+  for (const Eigen::Vector2d& point : ClipToBox(polygon, image)) {
     raw.push_back(camera.Distort(point));
   }
   const Eigen::AlignedBox2d raw_image(Eigen::Vector2d::Zero(),

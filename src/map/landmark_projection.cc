@@ -18,9 +18,11 @@ std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
     return std::nullopt;
   }
   view.pixel = sensor.camera.Project(view.point_in_cam);
-  if (!sensor.Sees(view.pixel)) {
+  const std::optional<Eigen::Vector2d> raw = sensor.RawPixel(view.pixel);
+  if (!raw) {
     return std::nullopt;
   }
+  view.raw_pixel = *raw;
   const double distance = view.point_in_cam.norm();
   if (distance * kDistanceMargin < landmark.min_distance ||
       distance > landmark.max_distance * kDistanceMargin) {
@@ -31,8 +33,6 @@ std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
   if (view.cos_view < kMinCosView) {
     return std::nullopt;
   }
-  view.grid_pixel = sensor.ToGrid(view.pixel);
-  view.right_u = sensor.camera.FarRight(view.pixel.x()) - sensor.camera.bf / view.point_in_cam.z();
   view.level = sensor.levels.PredictLevel(distance, landmark.max_distance);
   return view;
 }

@@ -14,8 +14,7 @@ namespace hullslam {
 struct LandmarkProjection {
   Eigen::Vector3d point_in_cam = Eigen::Vector3d::Zero();  // m
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();         // px, undistorted
-  Eigen::Vector2d grid_pixel = Eigen::Vector2d::Zero();    // px (Sensor::ToGrid)
-  double right_u = 0.0;                                    // px in the virtual right image
+  Eigen::Vector2d raw_pixel = Eigen::Vector2d::Zero();     // px
   double cos_view = 0.0;  // cosine of the angle to the landmark's viewing direction
   int level = 0;          // level of the pyramid at which it should be found
 };

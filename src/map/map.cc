@@ -96,7 +96,7 @@ void Map::BeginSession(Session session) {
 FrameId Map::NextFrame() const { return keyframe_of_frame_.NextId(); }
 
 int Map::ObservationWeight(const Frame& frame, uint32_t keypoint) {
-  return frame.features.right_u[keypoint] >= 0.0f ? 2 : 1;
+  return frame.features.depth[keypoint] > 0.0f ? 2 : 1;
 }
 
 KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world,

@@ -11,6 +11,8 @@ namespace {
 
 constexpr auto kMostPixel = static_cast<float>(kMostPixels);
 constexpr auto kMostDepth = static_cast<float>(kMostMetres);
+// Older versions wrote the column in the right image, which follows from the depth.
+constexpr float kNoColumn = -1.0f;
 
 void WriteFeatures(const FrameFeatures& features, ByteWriter& out) {
   out.PutCount(features.size());
@@ -20,7 +22,7 @@ void WriteFeatures(const FrameFeatures& features, ByteWriter& out) {
     out.Put(keypoint.angle);
     out.Put(static_cast<uint8_t>(keypoint.level));
     out.Put(features.depth[i]);
-    out.Put(features.right_u[i]);
+    out.Put(kNoColumn);
     for (const uint64_t word : features.descriptors[i]) {
       out.Put(word);
     }
@@ -36,7 +38,6 @@ FrameFeatures ReadFeatures(const MapSettings& settings, ByteReader& in) {
   features.keypoints.reserve(count);
   features.descriptors.reserve(count);
   features.depth.reserve(count);
-  features.right_u.reserve(count);
   for (size_t i = 0; i < count; ++i) {
     Keypoint keypoint;
     keypoint.undistorted = in.GetMatrix<Eigen::Vector2f>(kMostPixel);
@@ -45,15 +46,14 @@ FrameFeatures ReadFeatures(const MapSettings& settings, ByteReader& in) {
     in.Require(keypoint.level < settings.level_count, "has a keypoint of a level that is not used");
     features.keypoints.push_back(keypoint);
     features.depth.push_back(in.GetFinite(kMostDepth));
-    features.right_u.push_back(in.GetFinite(std::numeric_limits<float>::max()));
+    in.GetFinite(std::numeric_limits<float>::max());
     Descriptor descriptor{};
     for (uint64_t& word : descriptor) {
       word = in.Get<uint64_t>();
     }
     features.descriptors.push_back(descriptor);
   }
-  features.grid =
-      MakeKeypointGrid(features.keypoints, settings.camera, settings.camera.UndistortedBounds());
+  features.grid = MakeKeypointGrid(features.keypoints, settings.camera);
   return features;
 }
 

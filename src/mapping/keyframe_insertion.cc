@@ -64,7 +64,7 @@ void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor, const Land
   for (const uint32_t keypoint : KeypointsByDepth(frame->features)) {
     const double depth = static_cast<double>(frame->features.depth[keypoint]);
     const Eigen::Vector2d pixel = frame->features.keypoints[keypoint].undistorted.cast<double>();
-    size_t& in_cell = in_cells[CellOf(sensor.GridBounds(), sensor.ToGrid(pixel))];
+    size_t& in_cell = in_cells[CellOf(sensor.camera.RawBounds(), sensor.camera.Distort(pixel))];
     if (depth > sensor.close_depth && count >= rules.enough_in_image &&
         in_cell >= rules.enough_in_cell) {
       continue;

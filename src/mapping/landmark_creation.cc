@@ -144,10 +144,10 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
     return {};
   }
   const Eigen::Matrix3d calibration = sensor.camera.Matrix();
-  return MatchForTriangulation(
-      a.frame->features, FreeKeypoints(a), b.frame->features, FreeKeypoints(b),
-      FundamentalFromPose(b_from_a, calibration, calibration), EpipoleOf(b_from_a, sensor.camera),
-      sensor.levels, {.lens = sensor.camera.IsFisheye() ? &sensor.camera : nullptr});
+  return MatchForTriangulation(a.frame->features, FreeKeypoints(a), b.frame->features,
+                               FreeKeypoints(b),
+                               FundamentalFromPose(b_from_a, calibration, calibration),
+                               EpipoleOf(b_from_a, sensor.camera), sensor.levels, sensor.camera);
 }
 
 bool IsConsistent(const SeenPoint& a, const SeenPoint& b, const Eigen::Vector3d& point,
@@ -156,7 +156,7 @@ bool IsConsistent(const SeenPoint& a, const SeenPoint& b, const Eigen::Vector3d&
          HasConsistentScale(a, b, point, sensor);
 }
 
-// The pixels (Sensor::ToGrid) and depths of the landmarks of a keyframe.
+// The raw pixels and the depths of the landmarks of a keyframe.
 class NearbyDepth {
  public:
   NearbyDepth(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
@@ -165,7 +165,8 @@ class NearbyDepth {
         const Eigen::Vector3d& position = map.landmarks().At(keyframe.landmarks[i]).position;
         const Eigen::Vector2d pixel =
             keyframe.frame->features.keypoints[i].undistorted.cast<double>();
-        samples_.push_back({sensor.ToGrid(pixel), (keyframe.cam_from_world * position).z()});
+        samples_.push_back(
+            {sensor.camera.Distort(pixel), (keyframe.cam_from_world * position).z()});
       }
     }
   }
@@ -195,7 +196,7 @@ class NearbyDepth {
   std::vector<Sample> samples_;
 };
 
-// The distance in image b, px, between a point of a at this depth and a point that is
+// The distance in the raw image b, px, between a point of a at this depth and a point that is
 // infinitely far away.
 double ParallaxAt(double depth, const SeenPoint& a, const SeenPoint& b, const Sensor& sensor) {
   const Rigid3 b_from_a = b.keyframe->cam_from_world * Inverse(a.keyframe->cam_from_world);
@@ -204,12 +205,9 @@ double ParallaxAt(double depth, const SeenPoint& a, const SeenPoint& b, const Se
   if (point.z() <= 0.0 || infinite.z() <= 0.0) {
     return 0.0;
   }
-  if (sensor.camera.IsFisheye()) {
-    return (sensor.camera.Distort(sensor.camera.Project(point)) -
-            sensor.camera.Distort(sensor.camera.Project(infinite)))
-        .norm();
-  }
-  return sensor.camera.fx * (point.hnormalized() - infinite.hnormalized()).norm();
+  return (sensor.camera.Distort(sensor.camera.Project(point)) -
+          sensor.camera.Distort(sensor.camera.Project(infinite)))
+      .norm();
 }
 
 // Triangulates a pair of a monocular camera if the parallax expected for its depth is large enough.
@@ -218,7 +216,7 @@ double ParallaxAt(double depth, const SeenPoint& a, const SeenPoint& b, const Se
 // computed from the depth of the landmarks that are nearest in the image.
 std::optional<Eigen::Vector3d> LocateMonocular(const SeenPoint& a, const SeenPoint& b,
                                                const NearbyDepth& nearby, const Sensor& sensor) {
-  const std::optional<double> depth = nearby.At(sensor.ToGrid(a.pixel));
+  const std::optional<double> depth = nearby.At(sensor.camera.Distort(a.pixel));
   const double noise = std::hypot(a.scale, b.scale);
   if (!depth || ParallaxAt(*depth, a, b, sensor) < kMinParallaxSigmas * noise) {
     return std::nullopt;

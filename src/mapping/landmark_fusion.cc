@@ -64,9 +64,9 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
       continue;
     }
     Projection& projection = projections.emplace_back();
-    projection.pixel = view->grid_pixel.cast<float>();
-    projection.right_u = static_cast<float>(view->right_u);
+    projection.pixel = view->raw_pixel.cast<float>();
     projection.radius = kRadius * sensor.levels.scale[static_cast<size_t>(view->level)];
+    projection.ExpectDepth(view->point_in_cam.z(), sensor.camera.bf);
     projection.min_level = view->level - 1;
     projection.max_level = view->level;
     projection.descriptor = landmark->descriptor;

@@ -18,9 +18,8 @@ struct Best {
   uint32_t keypoint = 0;
 };
 
-bool IsRightOff(const Projection& projection, float right_u) {
-  return projection.right_u >= 0.0f && right_u >= 0.0f &&
-         std::abs(projection.right_u - right_u) > projection.radius;
+bool IsDepthOff(const Projection& projection, float depth) {
+  return depth > 0.0f && (depth < projection.nearest || depth > projection.farthest);
 }
 
 HULLSLAM_FUNCTION_CLONES
@@ -28,7 +27,7 @@ Best FindBest(const FrameFeatures& features, const Projection& projection,
               std::span<const uint8_t> taken, const std::vector<uint32_t>& candidates) {
   Best best;
   for (const uint32_t i : candidates) {
-    if ((!taken.empty() && taken[i] != 0) || IsRightOff(projection, features.right_u[i])) {
+    if ((!taken.empty() && taken[i] != 0) || IsDepthOff(projection, features.depth[i])) {
       continue;
     }
     const int distance = HammingDistance(projection.descriptor, features.descriptors[i]);
@@ -65,6 +64,13 @@ void KeepConsistent(const FrameFeatures& features, std::span<const Projection> p
 }
 
 }  // namespace
+
+void Projection::ExpectDepth(double z, double bf) {
+  const double disparity = bf / z;
+  nearest = static_cast<float>(bf / (disparity + radius));
+  farthest = disparity > radius ? static_cast<float>(bf / (disparity - radius))
+                                : std::numeric_limits<float>::infinity();
+}
 
 std::vector<Match> MatchByProjection(const FrameFeatures& features,
                                      std::span<const Projection> projections,

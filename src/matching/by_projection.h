@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,13 +15,19 @@ namespace hullslam {
 
 // The expected view of a point in an image, and the search window around it.
 struct Projection {
-  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, as in the grid (Sensor::ToGrid)
-  float right_u = -1.0f;  // px in the virtual right image; below 0: not compared
-  float radius = 0.0f;    // px; half side of the search window and bound on the error of right_u
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, raw
+  float radius = 0.0f;                              // px; half side of the search window
+  // Keypoints with a depth out of this range are not matched, m.
+  float nearest = 0.0f;
+  float farthest = std::numeric_limits<float>::infinity();
   int min_level = 0;
   int max_level = 0;
   Descriptor descriptor{};
   float angle = 0.0f;  // radians; used if rotations are compared
+
+  // Sets the range of depths whose disparities bf / z deviate by at most `radius` from that of the
+  // depth `z` (m).
+  void ExpectDepth(double z, double bf);
 };
 
 struct ProjectionSearch {

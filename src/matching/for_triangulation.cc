@@ -29,17 +29,17 @@ struct Block {
   std::array<uint32_t, kSize> keypoints = {};
 };
 
-// How a fisheye lens stretches the undistorted image at each keypoint of `indices`, by keypoint:
-// the undistorted offset of a raw offset. Empty without such a lens.
+// How undistortion stretches the image at each keypoint of `indices`, by keypoint: the undistorted
+// offset of a raw offset. Empty without distortion.
 std::vector<Eigen::Matrix2d> StretchesOf(const FrameFeatures& features,
                                          std::span<const uint32_t> indices,
-                                         const PinholeCamera* lens) {
+                                         const PinholeCamera& camera) {
   std::vector<Eigen::Matrix2d> stretches;
-  if (lens != nullptr) {
+  if (camera.IsDistorted()) {
     stretches.resize(features.size());
     for (const uint32_t i : indices) {
       stretches[i] =
-          lens->DistortionJacobian(features.keypoints[i].undistorted.cast<double>()).inverse();
+          camera.DistortionJacobian(features.keypoints[i].undistorted.cast<double>()).inverse();
     }
   }
   return stretches;
@@ -101,8 +101,8 @@ void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descrip
   }
 }
 
-// Squared distance from a pixel to the line a x + b y + c = 0, px^2; with a fisheye lens in the raw
-// image. It is NaN if a and b are zero, which happens without a baseline.
+// Squared distance from a pixel to the line a x + b y + c = 0, px^2; in the raw image. It
+// is NaN if a and b are zero, which happens without a baseline.
 double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& pixel,
                            const Eigen::Matrix2d* stretch) {
   const double value = line.head<2>().dot(pixel) + line.z();
@@ -111,7 +111,7 @@ double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& p
   return value * value / slope;
 }
 
-// Squared distance of two pixels, px^2; with a fisheye lens in the raw image, to first order.
+// Squared distance of two pixels, px^2; in the raw image, to first order.
 double SquaredDistance(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Matrix2d* stretch) {
   const Eigen::Vector2d offset = a - b;
@@ -123,9 +123,10 @@ double SquaredDistance(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
 std::vector<Match> MatchForTriangulation(
     const FrameFeatures& a, std::span<const uint32_t> a_indices, const FrameFeatures& b,
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,
-    const Eigen::Vector2d& epipole, const ScaleLevels& levels, const TriangulationSearch& search) {
+    const Eigen::Vector2d& epipole, const ScaleLevels& levels, const PinholeCamera& camera,
+    const TriangulationSearch& search) {
   std::vector<Match> matches;
-  const std::vector<Eigen::Matrix2d> stretches = StretchesOf(b, b_indices, search.lens);
+  const std::vector<Eigen::Matrix2d> stretches = StretchesOf(b, b_indices, camera);
   const std::vector<Block> blocks =
       MakeBlocks(b, b_indices, stretches, levels, search.max_epipolar_chi2);
   std::vector<uint32_t> near;
@@ -139,7 +140,7 @@ std::vector<Match> MatchForTriangulation(
     for (const auto& [keypoint, distance] : similar) {
       const Eigen::Vector2d pixel_b = b.keypoints[keypoint].undistorted.cast<double>();
       const auto level = static_cast<size_t>(b.keypoints[keypoint].level);
-      const bool has_depth = a.right_u[query] >= 0.0f || b.right_u[keypoint] >= 0.0f;
+      const bool has_depth = a.depth[query] > 0.0f || b.depth[keypoint] > 0.0f;
       const Eigen::Matrix2d* const stretch = stretches.empty() ? nullptr : &stretches[keypoint];
       const double epipole_bound =
           search.min_epipole_distance * static_cast<double>(levels.scale[level]);

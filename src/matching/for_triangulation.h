@@ -17,8 +17,6 @@ struct TriangulationSearch {
   // px^2 over sigma^2; 95 % of a chi-square distribution with one degree of freedom
   double max_epipolar_chi2 = 3.84;
   double min_epipole_distance = 10.0;  // px at level 0; the parallax is too small below this
-  // The fisheye lens of image b, in whose raw image the distances are measured; null without.
-  const PinholeCamera* lens = nullptr;
 };
 
 // Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that have
@@ -26,10 +24,11 @@ struct TriangulationSearch {
 // b: x_b^T F x_a = 0. `epipole` is the pixel where the line through both camera centres meets image
 // b. If camera a is in front of b, it is the image of a. Points near the epipole have little
 // parallax, also if a is behind b. So no pairs are made near the epipole if both depths are
-// unknown.
+// unknown. Distances are measured in the raw image b of the camera, to first order.
 std::vector<Match> MatchForTriangulation(
     const FrameFeatures& a, std::span<const uint32_t> a_indices, const FrameFeatures& b,
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,
-    const Eigen::Vector2d& epipole, const ScaleLevels& levels, const TriangulationSearch& search);
+    const Eigen::Vector2d& epipole, const ScaleLevels& levels, const PinholeCamera& camera,
+    const TriangulationSearch& search = {});
 
 }  // namespace hullslam

@@ -91,13 +91,8 @@ std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCa
     if (depth <= 0.0) {
       return std::nullopt;
     }
-    if (camera.IsFisheye()) {
-      radius += AngularRadius(camera, *observation.detection) *
-                (observation.cam_from_world * center).norm();
-      continue;
-    }
-    const Eigen::Vector2d sides = observation.detection->box.sizes();
-    radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
+    radius += AngularRadius(camera, *observation.detection) *
+              (observation.cam_from_world * center).norm();
   }
   Ellipsoid sphere;
   sphere.world_from_object.translation = center;

@@ -41,9 +41,7 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
   }
   plane.pixels_per_metre = scale / depth;
   plane.raw_per_metre =
-      camera.IsFisheye()
-          ? plane.pixels_per_metre * RawShare(camera, camera.Project(contact_in_cam), line.normal)
-          : plane.pixels_per_metre;
+      plane.pixels_per_metre * RawShare(camera, camera.Project(contact_in_cam), line.normal);
   return plane;
 }
 

@@ -27,7 +27,7 @@ struct TangentPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards
   double excess = 0.0;            // support function of the hull minus that of the quadric, m
   double pixels_per_metre = 0.0;  // shift of the line in the image per shift of the plane
-  double raw_per_metre = 0.0;     // the same in the raw image of a fisheye lens, to first order
+  double raw_per_metre = 0.0;     // the same in the raw image, to first order
 };
 
 // Nothing if the quadric is not in front of the camera.

@@ -63,7 +63,7 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera,
     projected = ProjectEllipsoid(camera.Matrix(), observation.cam_from_world, ellipsoid);
   }
   std::vector<SilhouetteLine> scaled;
-  if (camera.IsFisheye() && options.residual == ObjectResidual::kTangent) {
+  if (camera.IsDistorted() && options.residual == ObjectResidual::kTangent) {
     scaled = ScaleToRaw(camera, *observation.detection, lines);
     lines = scaled;
   }

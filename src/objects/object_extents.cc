@@ -75,8 +75,8 @@ bool IsNearBorder(const Detection& detection, const Line2& line, const Sensor& s
   if (corner == detection.hull.end()) {
     return true;
   }
-  const PinholeCamera::Bounds bounds = sensor.GridBounds();
-  const Eigen::Vector2d pixel = sensor.ToGrid(*corner);
+  const PinholeCamera::Bounds bounds = sensor.camera.RawBounds();
+  const Eigen::Vector2d pixel = sensor.camera.Distort(*corner);
   return std::min({pixel.x() - bounds.min_x, bounds.max_x - pixel.x(), pixel.y() - bounds.min_y,
                    bounds.max_y - pixel.y()}) < kBorderPx;
 }

@@ -15,7 +15,7 @@ double RawShare(const PinholeCamera& camera, const Eigen::Vector2d& undistorted,
 std::vector<SilhouetteLine> ScaleToRaw(const PinholeCamera& camera, const Detection& detection,
                                        std::span<const SilhouetteLine> lines) {
   std::vector<SilhouetteLine> scaled(lines.begin(), lines.end());
-  if (!camera.IsFisheye() || detection.hull.empty()) {
+  if (!camera.IsDistorted() || detection.hull.empty()) {
     return scaled;
   }
   for (SilhouetteLine& line : scaled) {

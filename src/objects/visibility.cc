@@ -42,11 +42,11 @@ class HiddenCounter {
   size_t nearer_ = 0;
 };
 
-// The box of raw pixels of a box of undistorted ones. With a fisheye lens the sides bulge out.
+// The box of raw pixels of a box of undistorted ones, whose sides a lens bends.
 Eigen::AlignedBox2d RawBoxOf(const PinholeCamera& camera, const Eigen::AlignedBox2d& bounds) {
   Eigen::AlignedBox2d raw(camera.Distort(bounds.min()), camera.Distort(bounds.max()));
   constexpr int kSteps = 8;
-  for (int i = 0; i <= kSteps && camera.IsFisheye(); ++i) {
+  for (int i = 0; i <= kSteps; ++i) {
     const Eigen::Vector2d at = bounds.min() + i / static_cast<double>(kSteps) * bounds.sizes();
     raw.extend(camera.Distort({at.x(), bounds.min().y()}));
     raw.extend(camera.Distort({at.x(), bounds.max().y()}));
@@ -131,22 +131,12 @@ class RayFilter {
   Eigen::Vector3d half_axes_;
 };
 
-// The share of the area of an ellipse's box that is in the image; exactly 1 if it is there as a
-// whole. With a fisheye lens, whose undistorted image is no box, and with a mask of all images, the
-// share of the outline.
+// The share of the outline of an ellipse that is in the image; exactly 1 if it is there as a whole.
 double ShareInside(const Ellipse& ellipse, const Sensor& sensor) {
-  if (sensor.camera.IsFisheye() || !sensor.mask_all.empty()) {
-    const std::vector<Eigen::Vector2d> outline = ellipse.Polygon();
-    const auto inside = std::count_if(outline.begin(), outline.end(),
-                                      [&](const auto& pixel) { return sensor.Sees(pixel); });
-    return static_cast<double>(inside) / static_cast<double>(outline.size());
-  }
-  const Eigen::AlignedBox2d box = ellipse.Bounds();
-  const PinholeCamera::Bounds& bounds = sensor.bounds;
-  const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
-                                  Eigen::Vector2d(bounds.max_x, bounds.max_y));
-  const Eigen::AlignedBox2d inside = box.intersection(image);
-  return inside.isEmpty() ? 0.0 : inside.volume() / box.volume();
+  const std::vector<Eigen::Vector2d> outline = ellipse.Polygon();
+  const auto inside = std::count_if(outline.begin(), outline.end(),
+                                    [&](const auto& pixel) { return sensor.Sees(pixel); });
+  return static_cast<double>(inside) / static_cast<double>(outline.size());
 }
 
 // Depths (z, m) of the nearest and of the farthest point of an ellipsoid.

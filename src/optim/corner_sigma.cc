@@ -25,11 +25,9 @@ double CornerSigma(const PinholeCamera& camera, const Eigen::Matrix<double, 6, 6
       Eigen::Matrix<double, 3, 6> point_by_step;
       point_by_step << Eigen::Matrix3d::Identity().colwise().cross(point),
           Eigen::Matrix3d::Identity();
-      Eigen::Matrix<double, 2, 6> pixel_by_step =
-          ProjectRgbdJacobian(camera, point).topRows<2>() * point_by_step;
-      if (camera.IsFisheye()) {
-        pixel_by_step = camera.DistortionJacobian(corner) * pixel_by_step;
-      }
+      const Eigen::Matrix<double, 2, 6> pixel_by_step =
+          camera.DistortionJacobian(corner) * ProjectRgbdJacobian(camera, point).topRows<2>() *
+          point_by_step;
       // With information = L L^T, the covariance of the pixel is A^T A with A = L^-1 J^T.
       const Eigen::Matrix<double, 6, 2> whitened =
           factors.matrixL().solve(pixel_by_step.transpose());

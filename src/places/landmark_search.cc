@@ -34,7 +34,7 @@ std::vector<FoundLandmark> FindLandmarks(const Map& map, const Sensor& sensor, c
       continue;
     }
     Projection& projection = projections.emplace_back();
-    projection.pixel = view->grid_pixel.cast<float>();
+    projection.pixel = view->raw_pixel.cast<float>();
     projection.radius = kRadius * sensor.levels.scale[static_cast<size_t>(view->level)];
     projection.min_level = view->level - 1;
     projection.max_level = view->level;

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
+#include "frame/depth_source.h"
 #include "frame/dynamic_mask.h"
-#include "frame/frame_builder.h"
 #include "frame/frame_detector.h"
 #include "frame/input_check.h"
 #include "hullslam/util/check.h"

@@ -33,10 +33,10 @@ std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam
   }
   const double radius = kLocalSearchRadius * (view->cos_view > kCosFrontal ? kFrontalShare : 1.0);
   Projection projection;
-  projection.pixel = view->grid_pixel.cast<float>();
-  projection.right_u = static_cast<float>(view->right_u);
+  projection.pixel = view->raw_pixel.cast<float>();
   projection.radius =
       static_cast<float>(radius) * sensor.levels.scale[static_cast<size_t>(view->level)];
+  projection.ExpectDepth(view->point_in_cam.z(), sensor.camera.bf);
   projection.min_level = view->level - 1;
   projection.max_level = view->level;
   projection.descriptor = landmark.descriptor;

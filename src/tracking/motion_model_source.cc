@@ -57,18 +57,17 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
     if (point.z() <= 0.0) {
       continue;
     }
-    const Eigen::Vector2d pixel = sensor.camera.Project(point);
-    if (!sensor.Sees(pixel)) {
+    const auto pixel = sensor.RawPixel(sensor.camera.Project(point));
+    if (!pixel) {
       continue;
     }
     const FrameFeatures& features = last.frame->features;
     const Keypoint& seen = features.keypoints[i];
     const LevelRange levels = LevelsAfterMotion(seen.level, forward, sensor);
     Projection& projection = expected.projections.emplace_back();
-    projection.pixel = sensor.ToGrid(pixel).cast<float>();
-    projection.right_u =
-        static_cast<float>(sensor.camera.FarRight(pixel.x()) - sensor.camera.bf / point.z());
+    projection.pixel = pixel->cast<float>();
     projection.radius = radius * sensor.levels.scale[static_cast<size_t>(seen.level)];
+    projection.ExpectDepth(point.z(), sensor.camera.bf);
     projection.min_level = levels.min;
     projection.max_level = levels.max;
     projection.descriptor = landmark->descriptor;

@@ -167,7 +167,7 @@ class Finder {
         continue;
       }
       Projection& projection = projections.emplace_back();
-      projection.pixel = view->grid_pixel.cast<float>();
+      projection.pixel = view->raw_pixel.cast<float>();
       projection.radius =
           kWideRadius * context_.sensor.levels.scale[static_cast<size_t>(view->level)];
       projection.min_level = view->level - 1;

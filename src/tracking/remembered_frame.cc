@@ -21,7 +21,7 @@ constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that we
 Detection Slim(Detection detection, const PinholeCamera& camera, const ObjectOptions& options) {
   if (TakesLines(options.pose.constraint.residual)) {
     detection.contour = {};
-    if (!camera.IsFisheye()) {  // else ScaleToRaw needs the hull
+    if (!camera.IsDistorted()) {  // else ScaleToRaw needs the hull
       detection.hull = {};
     }
   }
@@ -96,11 +96,11 @@ RememberedFrame Remember(const FrameReport& report, const PinholeCamera& camera,
   FrameFeatures& features = remembered.frame.features;
   const std::vector<uint32_t> found = Thin(IndicesOfValid(report.landmarks), kMostLandmarks);
   features.keypoints.reserve(found.size());
-  features.right_u.reserve(found.size());
+  features.depth.reserve(found.size());
   remembered.landmarks.reserve(found.size());
   for (const uint32_t i : found) {
     features.keypoints.push_back(report.frame->features.keypoints[i]);
-    features.right_u.push_back(report.frame->features.right_u[i]);
+    features.depth.push_back(report.frame->features.depth[i]);
     remembered.landmarks.push_back(report.landmarks[i]);
   }
   if (options.enabled && options.joint_pose) {

@@ -21,7 +21,7 @@ namespace hullslam {
 // each detection. While it is kept, the map must remember what has replaced its landmarks and
 // objects (Tracker::KeepIdsSince).
 struct RememberedFrame {
-  Frame frame;                        // its features have only keypoints and right_u
+  Frame frame;                        // its features have only keypoints and depths
   std::vector<LandmarkId> landmarks;  // one per keypoint
   std::vector<ObjectId> objects;      // one per detection
   uint32_t map_revision = 0;          // as in FrameReport

@@ -33,7 +33,7 @@ std::vector<double> SeenDepths::InverseDepths(const FrameFeatures& features) con
 }
 
 size_t SeenDepths::CellOf(const Eigen::Vector2d& undistorted) const {
-  const Eigen::Vector2d pixel = sensor_->ToGrid(undistorted);
+  const Eigen::Vector2d pixel = sensor_->camera.Distort(undistorted);
   const double x = (pixel.x() - bounds_.min_x) / (bounds_.max_x - bounds_.min_x);
   const double y = (pixel.y() - bounds_.min_y) / (bounds_.max_y - bounds_.min_y);
   const int column = std::clamp(static_cast<int>(x * kColumns), 0, kColumns - 1);

@@ -15,8 +15,9 @@ namespace hullslam {
 // of the image's width and 1/12 of its height.
 class SeenDepths {
  public:
-  // `sensor` must outlive this object. The cells divide the image of Sensor::ToGrid().
-  explicit SeenDepths(const Sensor& sensor) : sensor_(&sensor), bounds_(sensor.GridBounds()) {}
+  // `sensor` must outlive this object. The cells divide the raw image.
+  explicit SeenDepths(const Sensor& sensor)
+      : sensor_(&sensor), bounds_(sensor.camera.RawBounds()) {}
 
   // Adds a point at an undistorted pixel. Points that are not in front of the camera are left out.
   void Add(const Eigen::Vector2d& pixel, double depth);

@@ -51,8 +51,7 @@ bool IsPlausible(const Sensor& sensor, double duration, uint32_t frames) {
   return duration >= frames * shortest && duration <= frames * kLongestStep;
 }
 
-// The median speed of the keypoints in the image, px/s, as the bounds of motion measure it: in
-// pixels of Sensor::ToGrid().
+// The median speed of the keypoints in the raw image, px/s, as the bounds of motion measure it.
 double ImageSpeed(const FrameFeatures& features, const Sensor& sensor,
                   const PointVelocity& velocity, std::span<const double> inverse_depths) {
   std::vector<double> speeds;
@@ -60,7 +59,7 @@ double ImageSpeed(const FrameFeatures& features, const Sensor& sensor,
     const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
     const Eigen::Vector2d undistorted =
         ImageVelocity(sensor.camera, velocity, pixel, inverse_depths[i]);
-    speeds.push_back((sensor.GridJacobian(pixel) * undistorted).norm());
+    speeds.push_back((sensor.camera.DistortionJacobian(pixel) * undistorted).norm());
   }
   return speeds.empty() ? 0.0 : Median(std::move(speeds));
 }

@@ -62,12 +62,6 @@ TEST(SampleDepth, RejectsOtherImageTypes) {
                CheckError);
 }
 
-TEST(VirtualRight, IsLeftOfThePixelByTheDisparity) {
-  EXPECT_FLOAT_EQ(VirtualRight(320.0f, 2.0f, 40.0), 300.0f);
-  EXPECT_FLOAT_EQ(VirtualRight(10.0f, 0.5f, 40.0), -70.0f);
-  EXPECT_EQ(VirtualRight(320.0f, 0.0f, 40.0), -1.0f);
-}
-
 TEST(DepthOptions, BindsTheKeysOfOrbSlam2) {
   DepthOptions options;
   OptionTable table;

@@ -263,17 +263,5 @@ TEST_P(Lens, TheImageBeginsAtItsFirstPixelAndEndsBeforeItsSize) {
   EXPECT_FALSE(camera().SeesRaw({camera().cx, -0.001}));
 }
 
-// Columns below 0 stand for keypoints without depth.
-TEST_P(Lens, TheRightColumnOfAPixelThatIsNotVeryNearIsNotNegative) {
-  for (const Eigen::Vector2d& raw : SeenPixels()) {
-    const double u = camera().Undistort(raw).x();
-    const double nearest = camera().IsFisheye() ? 0.021 : camera().bf / std::max(u, 1.0) * 1.001;
-    if (u >= 1.0 || camera().IsFisheye()) {
-      EXPECT_GE(camera().FarRight(u) - camera().bf / nearest, 0.0) << u;
-      EXPECT_LT(camera().FarRight(u) - camera().bf / (0.9 * nearest), 0.0) << u;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace hullslam

@@ -184,7 +184,7 @@ HULLSLAM_WITH_ALL_CAMERAS(SampsonErrorOf);
 TEST_P(SampsonErrorOf, APairIsItsEpipolarErrorInStandardDeviations) {
   const Sensor& sensor = GetParam().sensor;
   const auto ray = [&](const Eigen::Vector2d& pixel) {
-    return sensor.camera.Unproject(FromGrid(sensor, pixel), 1.0);
+    return sensor.camera.Unproject(sensor.camera.Undistort(pixel), 1.0);
   };
   const Rigid3 motion = TrueMotion();
   const auto epipolar = [&](const Eigen::Vector4d& pixels) {
@@ -204,8 +204,8 @@ TEST_P(SampsonErrorOf, APairIsItsEpipolarErrorInStandardDeviations) {
       variance += std::pow(sigmas[axis] * slope, 2);
     }
     const double error = SampsonError(sensor.camera, motion,
-                                      {.a = FromGrid(sensor, pixels.head<2>()),
-                                       .b = FromGrid(sensor, pixels.tail<2>()),
+                                      {.a = sensor.camera.Undistort(pixels.head<2>()),
+                                       .b = sensor.camera.Undistort(pixels.tail<2>()),
                                        .sigma_a = sigmas[0],
                                        .sigma_b = sigmas[2]});
     const double expected = std::pow(epipolar(pixels), 2) / variance;

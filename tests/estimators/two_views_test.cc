@@ -357,14 +357,14 @@ TEST_P(TwoViewsOf, AgreeWithPairsOfTheWholeImageWithinTheirNoise) {
   const auto disturb = [&](const Eigen::Vector2d& pixel) {
     const double du = noise(random);
     const double dv = noise(random);
-    return FromGrid(sensor, sensor.ToGrid(pixel) + Eigen::Vector2d(du, dv));
+    return sensor.camera.Undistort(sensor.camera.Distort(pixel) + Eigen::Vector2d(du, dv));
   };
   std::vector<PixelPair> pairs;
   std::vector<bool> is_outer;
   while (pairs.size() < 600) {
     const double u = 20.0 + 600.0 * share(random);
     const double v = 20.0 + 440.0 * share(random);
-    const Eigen::Vector3d ray = sensor.camera.Unproject(FromGrid(sensor, {u, v}), 1.0);
+    const Eigen::Vector3d ray = sensor.camera.Unproject(sensor.camera.Undistort({u, v}), 1.0);
     const Eigen::Vector3d in_b = motion * ((1.0 + 3.0 * share(random)) * ray.normalized());
     if (in_b.z() > 0.2 && sensor.Sees(sensor.camera.Project(in_b))) {
       pairs.push_back(

@@ -49,9 +49,6 @@ TEST(FrameFeatures, SyntheticFeaturesAreProjectionsOfTheWorldPoints) {
       if (features.depth[i] > 0.0f) {
         ++with_depth;
         EXPECT_NEAR(features.depth[i], point.z(), 1e-5);
-        EXPECT_NEAR(features.right_u[i], pixel.x() - 40.0 / point.z(), 1e-4);
-      } else {
-        EXPECT_EQ(features.right_u[i], -1.0f);
       }
     }
     EXPECT_NEAR(with_depth, 0.5 * static_cast<double>(features.size()),
@@ -65,7 +62,6 @@ TEST(FrameFeatures, SyntheticFeaturesAreReproducible) {
   const SyntheticView second = SyntheticWorld(options).Observe(7);
   ASSERT_EQ(first.points, second.points);
   EXPECT_EQ(first.frame->features.descriptors, second.frame->features.descriptors);
-  EXPECT_EQ(first.frame->features.right_u, second.frame->features.right_u);
 }
 
 TEST(KeypointsByDepth, AreThoseWithDepthNearestFirst) {

@@ -133,7 +133,6 @@ TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   ASSERT_GT(features.size(), 100u);
   EXPECT_EQ(features.descriptors.size(), features.size());
   EXPECT_EQ(features.depth.size(), features.size());
-  EXPECT_EQ(features.right_u.size(), features.size());
 }
 
 TEST_F(FrameBuilderTest, LeavesOutFeaturesOnStraightEdgesOnlyWithoutDepth) {
@@ -282,13 +281,7 @@ TEST_F(FrameBuilderTest, DepthIsThatOfTheRawPixel) {
     const auto units = image.depth.at<uint16_t>(static_cast<int>(std::round(raw.y())),
                                                 static_cast<int>(std::round(raw.x())));
     EXPECT_FLOAT_EQ(features.depth[i], static_cast<float>(units) / 5000.0f);
-    if (units == 0) {
-      ++unknown;
-      EXPECT_EQ(features.right_u[i], -1.0f);
-    } else {
-      EXPECT_NEAR(features.right_u[i], features.keypoints[i].undistorted.x() - 100000.0f / units,
-                  1e-3f);
-    }
+    unknown += units == 0 ? 1 : 0;
   }
   EXPECT_GT(unknown, 0);
   EXPECT_LT(unknown, static_cast<int>(features.size()));
@@ -578,7 +571,6 @@ TEST_F(FrameBuilderTest, AMonocularCameraHasNoDepth) {
   ASSERT_EQ(frame->features.size(), Build(MakeImage())->features.size());
   for (size_t i = 0; i < frame->features.size(); ++i) {
     EXPECT_EQ(frame->features.depth[i], 0.0f);
-    EXPECT_EQ(frame->features.right_u[i], -1.0f);
   }
 }
 
@@ -681,15 +673,16 @@ TEST_P(SlantedPlane, DepthAgreesWithTheParallaxOfTwoViews) {
     }
     const Eigen::Vector3d point =
         sensor_.camera.Unproject(seen.keypoints[i].undistorted.cast<double>(), z);
-    const Eigen::Vector2d expected = sensor_.ToGrid(sensor_.camera.Project(point - other));
-    const Eigen::Vector2d far = sensor_.ToGrid(seen.keypoints[i].undistorted.cast<double>());
+    const Eigen::Vector2d expected = sensor_.camera.Distort(sensor_.camera.Project(point - other));
+    const Eigen::Vector2d far =
+        sensor_.camera.Distort(seen.keypoints[i].undistorted.cast<double>());
     std::vector<uint32_t> near;
     b->features.grid.FindNear(b->features.keypoints, expected.cast<float>(), 3.0F,
                               seen.keypoints[i].level, seen.keypoints[i].level, near);
     if (near.size() == 1 &&
         HammingDistance(seen.descriptors[i], b->features.descriptors[near[0]]) <= 40) {
       const Eigen::Vector2d found =
-          sensor_.ToGrid(b->features.keypoints[near[0]].undistorted.cast<double>());
+          sensor_.camera.Distort(b->features.keypoints[near[0]].undistorted.cast<double>());
       const Eigen::Vector2d parallax = expected - far;
       product += (found - expected).dot(parallax);
       square += parallax.squaredNorm();

@@ -18,8 +18,7 @@ std::vector<uint32_t> Near(const PinholeCamera& camera, const Eigen::Vector2d& c
   keypoints[0].undistorted = {1400.0f, 240.0f};
   keypoints[1].undistorted = {1000.0f, 240.0f};
   std::vector<uint32_t> found;
-  MakeKeypointGrid(keypoints, camera, camera.UndistortedBounds())
-      .FindNear(keypoints, center.cast<float>(), 40.0f, 0, 7, found);
+  MakeKeypointGrid(keypoints, camera).FindNear(keypoints, center.cast<float>(), 40.0f, 0, 7, found);
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -15,11 +15,12 @@ TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
   Sensor sensor = SyntheticSensor();
   sensor.depth_error = {.pixel_sigma = 0.5, .adjustment_pixel_sigma = 2.0, .disparity_sigma = 0.25};
   FrameFeatures features;
-  for (const float right_u : {80.0f, -1.0f}) {
+  for (const double disparity : {20.0, 0.0}) {
     Keypoint& keypoint = features.keypoints.emplace_back();
     keypoint.undistorted = {100.0f, 50.0f};
     keypoint.level = 2;
-    features.right_u.push_back(right_u);
+    features.depth.push_back(disparity > 0.0 ? static_cast<float>(sensor.camera.bf / disparity)
+                                             : 0.0f);
   }
   const double inverse_sigma = 2.0 / static_cast<double>(sensor.levels.scale[2]);
 
@@ -46,10 +47,7 @@ TEST(MeasurePoint, OfAFisheyeHasTheErrorOfTheRawPixelAndItsDisparity) {
   features.keypoints.resize(1);
   features.keypoints[0].undistorted = sensor.camera.Project({-2.5, 0.5, 1.0}).cast<float>();
   const float depth = 0.8f;
-  features.right_u = {VirtualRight(
-      static_cast<float>(sensor.camera.FarRight(features.keypoints[0].undistorted.x())), depth,
-      sensor.camera.bf)};
-  EXPECT_GT(features.right_u[0], 0.0f) << "negative columns are those without depth";
+  features.depth = {depth};
   const PointMeasurement measurement = MeasurePoint(sensor, features, 0, sensor.depth_error);
   EXPECT_NEAR(measurement.measured.z(), sensor.camera.bf / 0.8, 1e-3);
   const Eigen::Vector2d raw =

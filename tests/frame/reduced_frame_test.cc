@@ -19,7 +19,6 @@ Frame MakeFullFrame() {
     keypoint.level = static_cast<int>(i % 3);
     features.descriptors.push_back({i, 2 * i, 3 * i, 4 * i});
     features.depth.push_back(static_cast<float>(i));
-    features.right_u.push_back(static_cast<float>(i) - 1.0f);
   }
   features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   frame.detections.resize(3);
@@ -47,7 +46,6 @@ TEST(ReducedFrame, HasTheChosenKeypointsAndDetections) {
     EXPECT_EQ(reduced->features.keypoints[i].level, frame.features.keypoints[former].level);
     EXPECT_EQ(reduced->features.descriptors[i], frame.features.descriptors[former]);
     EXPECT_EQ(reduced->features.depth[i], frame.features.depth[former]);
-    EXPECT_EQ(reduced->features.right_u[i], frame.features.right_u[former]);
   }
   ASSERT_EQ(reduced->detections.size(), 2u);
   EXPECT_EQ(reduced->detections[0].label, "book");

@@ -52,7 +52,6 @@ Frame FrameOf(const std::vector<Eigen::Vector2d>& pixels) {
     frame.features.keypoints.push_back({.undistorted = pixel.cast<float>()});
     frame.features.descriptors.emplace_back();
     frame.features.depth.push_back(0.0F);
-    frame.features.right_u.push_back(-1.0F);
   }
   return frame;
 }
@@ -233,15 +232,13 @@ TEST(WithGlobalShutter, KeepsDisparities) {
   const Sensor sensor = RollingSensor();
   Frame frame = FrameOf({{100.0, 450.0}, {100.0, 450.0}});
   frame.features.depth[0] = 2.0F;
-  frame.features.right_u[0] = 80.0F;
   const std::vector<double> depths = {0.5, 0.5};
   const auto corrected = WithGlobalShutter(frame, sensor, {.linear = {1.0, 0.0, 0.0}}, depths);
   const FrameFeatures& features = corrected->features;
   EXPECT_NEAR(features.keypoints[0].undistorted.x(), 100.0 - 250.0 * kReadout * 210.0 / 480.0,
               1e-3);
-  EXPECT_FLOAT_EQ(features.keypoints[0].undistorted.x() - features.right_u[0], 20.0F);
   EXPECT_EQ(features.depth[0], 2.0F);
-  EXPECT_EQ(features.right_u[1], -1.0F);
+  EXPECT_EQ(features.depth[1], 0.0F);
 }
 
 TEST(WithGlobalShutter, LeavesTheFrameOfAStillCameraAsItIs) {

@@ -14,14 +14,13 @@ namespace {
 
 constexpr double kBaseline = 0.2;
 
-// One keypoint of level 0. `right_u` is below 0 if its depth is not known.
-std::shared_ptr<Frame> FrameWithKeypoint(uint32_t id, const Eigen::Vector2d& pixel, float right_u) {
+// One keypoint of level 0. `depth` is 0 if it is not known.
+std::shared_ptr<Frame> FrameWithKeypoint(uint32_t id, const Eigen::Vector2d& pixel, double depth) {
   auto frame = std::make_shared<Frame>();
   frame->id = FrameId(id);
   frame->features.keypoints.emplace_back().undistorted = pixel.cast<float>();
   frame->features.descriptors.emplace_back();
-  frame->features.depth = {0.0f};
-  frame->features.right_u = {right_u};
+  frame->features.depth = {static_cast<float>(depth)};
   return frame;
 }
 
@@ -35,8 +34,7 @@ bool IsKnown(double distance, double baseline, bool has_depth = false) {
     const double x = (id - 0.5) * baseline;
     const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0});
     const Eigen::Vector2d pixel = sensor.camera.Project(cam_from_world * point);
-    const auto right_u = static_cast<float>(pixel.x() - sensor.camera.bf / distance);
-    map.AddKeyframe(FrameWithKeypoint(id, pixel, has_depth ? right_u : -1.0f), cam_from_world);
+    map.AddKeyframe(FrameWithKeypoint(id, pixel, has_depth ? distance : 0.0), cam_from_world);
   }
   const LandmarkId landmark = map.AddLandmark(point, KeyframeId(0));
   map.AddObservation(landmark, KeyframeId(0), 0);

@@ -29,7 +29,6 @@ inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t wi
     const auto x = static_cast<float>(30 + i);
     features.keypoints[i].undistorted = {x, 100.0f};
     features.depth.push_back(i < with_depth ? 2.0f : 0.0f);
-    features.right_u.push_back(i < with_depth ? x - 20.0f : -1.0f);
   }
   frame->detections.resize(kDetections);
   for (uint32_t i = 0; i < kDetections; ++i) {

@@ -185,9 +185,10 @@ TEST_P(LandmarkCreationWith, PointsOffTheEpipolarLineAreRefused) {
   const SyntheticWorld world({.depth_share = 0.0}, GetParam().sensor);
   const auto shift = [&](Frame& frame) {
     for (Keypoint& keypoint : frame.features.keypoints) {
-      const Eigen::Vector2d pixel = world.sensor().ToGrid(keypoint.undistorted.cast<double>());
+      const Eigen::Vector2d pixel =
+          world.sensor().camera.Distort(keypoint.undistorted.cast<double>());
       keypoint.undistorted =
-          FromGrid(world.sensor(), pixel + Eigen::Vector2d(0.0, 15.0)).cast<float>();
+          world.sensor().camera.Undistort(pixel + Eigen::Vector2d(0.0, 15.0)).cast<float>();
     }
   };
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.3, 0.0, 0.0}), shift);
@@ -246,8 +247,8 @@ TEST_P(LandmarkCreationWith, AMonocularPairNeedsParallaxInStandardDeviations) {
   ASSERT_GT(created.size(), 50U);
   const auto most_parallax = [&](const Eigen::Vector3d& position) {
     const Eigen::Vector3d infinite = (position - center) / (position - center).z();
-    return (sensor.ToGrid(sensor.camera.Project(infinite + center / 2.0)) -
-            sensor.ToGrid(sensor.camera.Project(infinite)))
+    return (sensor.camera.Distort(sensor.camera.Project(infinite + center / 2.0)) -
+            sensor.camera.Distort(sensor.camera.Project(infinite)))
         .norm();
   };
   double largest = 0.0;

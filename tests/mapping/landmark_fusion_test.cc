@@ -166,16 +166,14 @@ TEST_P(LandmarkFusionWith, TakesTheMostSimilarKeypointThatAgreesWithTheProjectio
     for (size_t i = 0; i < count; ++i) {
       Keypoint decoy = features.keypoints[i];
       const float shift = 2.8f * world.sensor().levels.scale[static_cast<size_t>(decoy.level)];
-      const Eigen::Vector2d pixel = world.sensor().ToGrid(decoy.undistorted.cast<double>());
+      const Eigen::Vector2d pixel = world.sensor().camera.Distort(decoy.undistorted.cast<double>());
       decoy.undistorted =
-          FromGrid(world.sensor(), pixel + Eigen::Vector2d::Constant(static_cast<double>(shift)))
+          world.sensor()
+              .camera.Undistort(pixel + Eigen::Vector2d::Constant(static_cast<double>(shift)))
               .cast<float>();
-      const float right_u = features.right_u[i];
       features.keypoints.push_back(decoy);
       features.descriptors.push_back(features.descriptors[i]);
       features.depth.push_back(features.depth[i]);
-      const bool keeps_column = right_u < 0.0f || world.sensor().camera.IsFisheye();
-      features.right_u.push_back(keeps_column ? right_u : right_u + shift);
       features.descriptors[i][0] ^= 0xfffff;  // 20 bits
     }
     RebuildGrid(world.sensor(), frame);

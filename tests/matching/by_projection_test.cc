@@ -112,18 +112,21 @@ TEST(MatchByProjection, LeavesOutTakenKeypoints) {
   EXPECT_THROW(MatchByProjection(features, {&projection, 1}, too_short, {}), CheckError);
 }
 
-TEST(MatchByProjection, RightCoordinateIsComparedIfBothAreKnown) {
+TEST(MatchByProjection, TheDepthIsComparedIfBothAreKnown) {
   const FrameFeatures features =
-      MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0, .right_u = 60.0f},
-                    {.pixel = {101.0f, 100.0f}, .bits = 5, .right_u = 80.0f},
+      MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0, .depth = 1.0f},
+                    {.pixel = {101.0f, 100.0f}, .bits = 5, .depth = 2.0f},
                     {.pixel = {102.0f, 100.0f}, .bits = 9}});
   Projection projection = At(100.0f, 100.0f);
-  EXPECT_EQ(FoundNear(features, projection), 0);  // the projection has no right coordinate
-  projection.right_u = 88.0f;
+  EXPECT_EQ(FoundNear(features, projection), 0);  // the projection has no depth
+  const auto expect_disparity = [&](double disparity) {
+    projection.ExpectDepth(40.0 / disparity, 40.0);
+  };
+  expect_disparity(20.0 - projection.radius + 0.1);
   EXPECT_EQ(FoundNear(features, projection), 1);
-  projection.right_u = 69.9f;
+  expect_disparity(40.0 - projection.radius + 0.1);
   EXPECT_EQ(FoundNear(features, projection), 0);
-  projection.right_u = 20.0f;
+  expect_disparity(40.0 + projection.radius + 0.1);
   EXPECT_EQ(FoundNear(features, projection), 2);  // the keypoint without depth cannot disagree
 }
 
@@ -170,11 +173,10 @@ TEST_P(MatchByProjectionWith, FindsEveryPointOfTheWorldAtItsProjection) {
     const Eigen::Vector3d in_cam = SyntheticWorld::CamFromWorld(10) * world.points()[point];
     Projection projection = At(0.0f, 0.0f);
     const Eigen::Vector2d pixel = sensor.camera.Project(in_cam);
-    projection.pixel = sensor.ToGrid(pixel).cast<float>();
-    projection.right_u =
-        static_cast<float>(sensor.camera.FarRight(pixel.x()) - sensor.camera.bf / in_cam.z());
+    projection.pixel = sensor.camera.Distort(pixel).cast<float>();
     projection.descriptor = world.descriptor(point);
     projection.radius = 15.0f;
+    projection.ExpectDepth(in_cam.z(), sensor.camera.bf);
     projections.push_back(projection);
   }
   const auto matches = MatchByProjection(features, projections, {}, {.max_distance = 50});

@@ -61,14 +61,14 @@ TEST(MatchForTriangulation, DistanceToTheLineIsInSigmasOfTheLevel) {
 
 TEST(MatchForTriangulation, WithoutDepthLeavesOutKeypointsNearTheEpipole) {
   const Eigen::Vector2d epipole(305.0, 100.0);
-  const auto count = [&](float right_of_a, const MadeKeypoint& b) {
-    const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .right_u = right_of_a}});
+  const auto count = [&](float depth_of_a, const MadeKeypoint& b) {
+    const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .depth = depth_of_a}});
     return MatchAll(a, MakeFeatures({b}), SideBySide(), epipole).size();
   };
-  EXPECT_EQ(count(-1.0f, {.pixel = {296.0f, 100.0f}}), 0u);
-  EXPECT_EQ(count(-1.0f, {.pixel = {294.0f, 100.0f}}), 1u);
-  EXPECT_EQ(count(-1.0f, {.pixel = {296.0f, 100.0f}, .right_u = 280.0f}), 1u);
-  EXPECT_EQ(count(280.0f, {.pixel = {296.0f, 100.0f}}), 1u);
+  EXPECT_EQ(count(0.0f, {.pixel = {296.0f, 100.0f}}), 0u);
+  EXPECT_EQ(count(0.0f, {.pixel = {294.0f, 100.0f}}), 1u);
+  EXPECT_EQ(count(0.0f, {.pixel = {296.0f, 100.0f}, .depth = 2.0f}), 1u);
+  EXPECT_EQ(count(2.0f, {.pixel = {296.0f, 100.0f}}), 1u);
 }
 
 // A keypoint at level 5 is 2.49 times less precise than one at level 0.
@@ -101,7 +101,7 @@ TEST(MatchForTriangulation, SearchesOnlyTheGivenIndices) {
   const std::vector<uint32_t> a_indices = {0};
   const std::vector<uint32_t> b_indices = {1, 2};
   const auto matches = MatchForTriangulation(a, a_indices, b, b_indices, SideBySide(), kFarEpipole,
-                                             ScaleLevels::Create(8, 1.2), {});
+                                             ScaleLevels::Create(8, 1.2), PinholeCamera());
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_EQ(matches[0].query, 0u);
   EXPECT_EQ(matches[0].keypoint, 1u);
@@ -126,9 +126,8 @@ TEST_P(MatchForTriangulationWith, FindsAllAndOnlyTrueMatchesInTwoViews) {
   const Eigen::Matrix3d k = camera.Matrix();
   const Rigid3 b_from_a =
       SyntheticWorld::CamFromWorld(20) * Inverse(SyntheticWorld::CamFromWorld(0));
-  const auto matches =
-      MatchAll(a.frame->features, b.frame->features, FundamentalFromPose(b_from_a, k, k),
-               kFarEpipole, {.lens = camera.IsFisheye() ? &camera : nullptr});
+  const auto matches = MatchAll(a.frame->features, b.frame->features,
+                                FundamentalFromPose(b_from_a, k, k), kFarEpipole, camera);
   EXPECT_GT(matches.size(), 200u);
   for (const Match& match : matches) {
     EXPECT_EQ(a.points[match.query], b.points[match.keypoint]);
@@ -147,7 +146,7 @@ TEST(MatchForTriangulation, DistancesAreThoseOfTheRawImageWithAFisheye) {
     const Eigen::Vector2d raw = camera.Distort(on_line) + Eigen::Vector2d(0.0, raw_offset);
     const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, static_cast<float>(on_line.y())}}});
     const FrameFeatures b = MakeFeatures({{.pixel = camera.Undistort(raw).cast<float>()}});
-    return MatchAll(a, b, SideBySide(), kFarEpipole, {.lens = &camera}).size();
+    return MatchAll(a, b, SideBySide(), kFarEpipole, camera).size();
   };
   EXPECT_EQ(count(0.0), 1u);
   // The line of this row is slanted in the raw image.
@@ -163,7 +162,7 @@ TEST(MatchForTriangulation, TheDistanceToTheEpipoleIsThatOfTheRawImageWithAFishe
     const Eigen::Vector2d pixel = camera.Project({x, 0.0, 1.0});
     const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, static_cast<float>(pixel.y())}}});
     const FrameFeatures b = MakeFeatures({{.pixel = pixel.cast<float>()}});
-    return MatchAll(a, b, SideBySide(), camera.Project({3.0, 0.0, 1.0}), {.lens = &camera}).size();
+    return MatchAll(a, b, SideBySide(), camera.Project({3.0, 0.0, 1.0}), camera).size();
   };
   EXPECT_EQ(count(2.8), 0u) << "49 undistorted px, but 5 raw px";
   EXPECT_EQ(count(1.5), 1u);

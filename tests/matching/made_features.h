@@ -25,7 +25,7 @@ struct MadeKeypoint {
   Eigen::Vector2f pixel = {0.0f, 0.0f};
   int bits = 0;  // argument of FirstBits()
   int level = 0;
-  float right_u = -1.0f;
+  float depth = 0.0f;  // m
   float angle = 0.0f;
 };
 
@@ -38,8 +38,7 @@ inline FrameFeatures MakeFeatures(const std::vector<MadeKeypoint>& keypoints) {
     keypoint.level = made.level;
     keypoint.angle = made.angle;
     features.descriptors.push_back(FirstBits(made.bits));
-    features.right_u.push_back(made.right_u);
-    features.depth.push_back(made.right_u >= 0.0f ? 40.0f / (made.pixel.x() - made.right_u) : 0.0f);
+    features.depth.push_back(made.depth);
   }
   features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   return features;

@@ -203,7 +203,6 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   frame->features.keypoints.resize(3);
   frame->features.descriptors.resize(3);
   frame->features.depth.resize(3, 0.0f);
-  frame->features.right_u.resize(3, -1.0f);
   const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
   const auto table = MakeTable();
   frame->detections.push_back(Detect(table[0], sensor_, pose));

@@ -112,8 +112,7 @@ inline DepthGrid DepthOf(const std::vector<MadeObject>& objects, const Sensor& s
   return DepthGrid(columns, std::move(samples));
 }
 
-// The line, which is a tangent of the ellipse, moved outwards by so many px of the image in which
-// distances are measured (Sensor::ToGrid).
+// The line, which is a tangent of the ellipse, moved outwards by so many raw px.
 inline Line2 MovedInImage(const Sensor& sensor, const Ellipse& ellipse, const Line2& tangent,
                           double pixels) {
   const Eigen::Vector2d normal = tangent.normal;
@@ -121,9 +120,10 @@ inline Line2 MovedInImage(const Sensor& sensor, const Ellipse& ellipse, const Li
       ellipse.center + ellipse.shape * normal / ellipse.HalfExtent(normal);
   constexpr double kStep = 1e-3;
   const Eigen::Vector2d along = kStep * Eigen::Vector2d(-normal.y(), normal.x());
-  const Eigen::Vector2d side = sensor.ToGrid(touching + along) - sensor.ToGrid(touching - along);
+  const Eigen::Vector2d side =
+      sensor.camera.Distort(touching + along) - sensor.camera.Distort(touching - along);
   const Eigen::Vector2d outwards =
-      (sensor.ToGrid(touching + kStep * normal) - sensor.ToGrid(touching)) / kStep;
+      (sensor.camera.Distort(touching + kStep * normal) - sensor.camera.Distort(touching)) / kStep;
   const double share = std::abs(outwards.dot(Eigen::Vector2d(-side.y(), side.x()).normalized()));
   Line2 moved = tangent;
   moved.offset -= pixels / share;
@@ -185,7 +185,6 @@ class TexturedObject {
     }
     frame->features.descriptors.resize(points_.size());
     frame->features.depth.resize(points_.size(), 0.0f);
-    frame->features.right_u.resize(points_.size(), -1.0f);
     const KeyframeId keyframe = AddToTree(map, std::move(frame), cam_from_world);
     for (uint32_t i = 0; i < points_.size(); ++i) {
       if (landmarks_.size() == i) {

@@ -114,7 +114,6 @@ TEST_F(Visibility, WithoutDepthLandmarksShowNearerSurfaces) {
     for (const Eigen::Vector2f& pixel : pixels) {
       frame->features.keypoints.push_back({.undistorted = pixel});
       frame->features.descriptors.emplace_back();
-      frame->features.right_u.push_back(-1.0f);
       frame->features.depth.push_back(0.0f);
     }
     const KeyframeId keyframe = Add(Rigid3(), std::move(frame));
@@ -271,7 +270,6 @@ TEST_F(Visibility, TheSurfaceIsMeasuredFromLandmarks) {
   }
   frame->features.descriptors.resize(3);
   frame->features.depth.resize(3, 0.0f);
-  frame->features.right_u.resize(3, -1.0f);
   const KeyframeId id = Add(Rigid3(), frame);
   for (uint32_t i = 0; i < 3; ++i) {
     const Eigen::Vector2d pixel = frame->features.keypoints[i].undistorted.cast<double>();

@@ -256,7 +256,6 @@ TEST_F(BundleAdjustment, MonocularACornerThatIsFoundSeveralTimesCountsOnce) {
                 {.undistorted = sensor.camera.Project(cam_from_world * corner).cast<float>()});
             frame.features.descriptors.push_back(world.descriptor(i));
             frame.features.depth.push_back(0.0f);
-            frame.features.right_u.push_back(-1.0f);
           }
           RebuildGrid(sensor, frame);
         });

@@ -85,7 +85,6 @@ class RingWorld {
   static void Append(const FrameFeatures& from, FrameFeatures& to) {
     to.keypoints.insert(to.keypoints.end(), from.keypoints.begin(), from.keypoints.end());
     to.descriptors.insert(to.descriptors.end(), from.descriptors.begin(), from.descriptors.end());
-    to.right_u.insert(to.right_u.end(), from.right_u.begin(), from.right_u.end());
     to.depth.insert(to.depth.end(), from.depth.begin(), from.depth.end());
   }
 

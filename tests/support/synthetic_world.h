@@ -132,7 +132,7 @@ class SyntheticWorld {
     for (uint32_t i = 0; i < points_.size(); ++i) {
       Eigen::Vector3d point_in_cam = cam_from_world_at(0.0) * points_[i];
       for (int k = 0; sensor_.readout_time != 0.0 && k < 10; ++k) {
-        const Eigen::Vector2d pixel = sensor_.ToGrid(sensor_.camera.Project(point_in_cam));
+        const Eigen::Vector2d pixel = sensor_.camera.Distort(sensor_.camera.Project(point_in_cam));
         const double place = sensor_.readout_direction == ReadoutDirection::kRows
                                  ? pixel.y() / sensor_.camera.height
                                  : pixel.x() / sensor_.camera.width;
@@ -143,8 +143,7 @@ class SyntheticWorld {
         points.push_back(i);
       }
     }
-    frame->features.grid =
-        MakeKeypointGrid(frame->features.keypoints, sensor_.camera, sensor_.bounds);
+    frame->features.grid = MakeKeypointGrid(frame->features.keypoints, sensor_.camera);
     return {std::move(frame), std::move(points)};
   }
 
@@ -161,17 +160,13 @@ class SyntheticWorld {
     std::normal_distribution<double> normal;
     const double sigma = options_.pixel_noise *
                          static_cast<double>(sensor_.levels.scale[static_cast<size_t>(level)]);
-    Eigen::Vector2d pixel = sensor_.ToGrid(sensor_.camera.Project(point_in_cam));
+    Eigen::Vector2d pixel = sensor_.camera.Distort(sensor_.camera.Project(point_in_cam));
     pixel.x() += sigma * normal(random);
     pixel.y() += sigma * normal(random);
-    if (sensor_.camera.IsFisheye()) {
-      pixel = sensor_.camera.Undistort(pixel);
-    }
-    const double far_right = sensor_.camera.FarRight(pixel.x());
-    const double right_u =
-        far_right - sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
+    const double disparity =
+        sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
     Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.undistorted = pixel.cast<float>();
+    keypoint.undistorted = sensor_.camera.Undistort(pixel).cast<float>();
     keypoint.angle = patch.angle;
     keypoint.level = level;
     Descriptor& descriptor = features.descriptors.emplace_back(patch.descriptor);
@@ -179,10 +174,8 @@ class SyntheticWorld {
       const uint64_t bit = random() % 256;
       descriptor[bit / 64] ^= uint64_t{1} << (bit % 64);
     }
-    const bool has_depth = patch.has_depth && right_u >= 0.0 && right_u < far_right;
-    features.right_u.push_back(has_depth ? static_cast<float>(right_u) : -1.0f);
-    features.depth.push_back(
-        has_depth ? static_cast<float>(sensor_.camera.bf / (far_right - right_u)) : 0.0f);
+    const bool has_depth = patch.has_depth && disparity > 0.0;
+    features.depth.push_back(has_depth ? static_cast<float>(sensor_.camera.bf / disparity) : 0.0f);
   }
 
   SyntheticWorldOptions options_;

@@ -64,11 +64,6 @@ inline std::vector<TestCamera> TestCameras() {
           pair};
 }
 
-// The undistorted pixel of one in which distances are measured: the inverse of Sensor::ToGrid().
-inline Eigen::Vector2d FromGrid(const Sensor& sensor, const Eigen::Vector2d& pixel) {
-  return sensor.camera.IsFisheye() ? sensor.camera.Undistort(pixel) : pixel;
-}
-
 inline std::string NameOfCamera(const testing::TestParamInfo<TestCamera>& info) {
   return info.param.name;
 }

@@ -12,7 +12,7 @@ namespace hullslam {
 
 // Builds the grid of the frame again after its keypoints were changed.
 inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
-  frame.features.grid = MakeKeypointGrid(frame.features.keypoints, sensor.camera, sensor.bounds);
+  frame.features.grid = MakeKeypointGrid(frame.features.keypoints, sensor.camera);
 }
 
 // Adds keypoints at a depth of 1 m that no other frame shows. If there are more than 70 of them,
@@ -28,8 +28,6 @@ inline void AddUnknownPoints(const Sensor& sensor, int count, int level, Frame& 
     keypoint.level = level;
     frame.features.descriptors.push_back({random(), random(), random(), random()});
     frame.features.depth.push_back(1.0f);
-    const double far_right = sensor.camera.FarRight(static_cast<double>(keypoint.undistorted.x()));
-    frame.features.right_u.push_back(static_cast<float>(far_right - sensor.camera.bf));
   }
   RebuildGrid(sensor, frame);
 }

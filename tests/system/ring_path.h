@@ -52,7 +52,6 @@ class RingPath {
       auto frame = std::make_shared<Frame>(*SharedRing().Observe(FrameId(i), pose).frame);
       if (sensor_.IsMonocular()) {
         std::fill(frame->features.depth.begin(), frame->features.depth.end(), 0.0f);
-        std::fill(frame->features.right_u.begin(), frame->features.right_u.end(), -1.0f);
       }
       tracked.push_back(pipeline.Track(std::move(frame)).tracked);
     }

@@ -149,7 +149,6 @@ PoseSearch SearchAmong(const std::vector<Eigen::Vector3d>& points) {
     const Eigen::Vector3d measured = ProjectRgbd(sensor.camera, point);
     features.keypoints.emplace_back().undistorted = measured.head<2>().cast<float>();
     features.descriptors.push_back({random(), random(), random(), random()});
-    features.right_u.push_back(static_cast<float>(measured.x() - measured.z()));
     features.depth.push_back(static_cast<float>(point.z()));
   }
   features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});

@@ -25,7 +25,6 @@ class PlantedMap {
       frame->features.keypoints.resize(kKeypoints);
       frame->features.descriptors.resize(kKeypoints);
       frame->features.depth.assign(kKeypoints, 1.0f);
-      frame->features.right_u.assign(kKeypoints, 1.0f);
       map.AddKeyframe(std::move(frame), Rigid3());
       used_.push_back(0);
     }

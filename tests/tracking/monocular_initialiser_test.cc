@@ -284,7 +284,6 @@ std::shared_ptr<Frame> Shortened(const Frame& frame, size_t count) {
   shortened->features.keypoints.resize(count);
   shortened->features.descriptors.resize(count);
   shortened->features.depth.resize(count);
-  shortened->features.right_u.resize(count);
   return shortened;
 }
 

@@ -70,7 +70,6 @@ class ObjectGuideTest : public testing::Test {
     to.features.keypoints.push_back(from.features.keypoints[i]);
     to.features.descriptors.push_back(from.features.descriptors[i]);
     to.features.depth.push_back(from.features.depth[i]);
-    to.features.right_u.push_back(from.features.right_u[i]);
   }
 
   void Forget(LandmarkId landmark, KeyframeId keyframe) {

@@ -131,7 +131,6 @@ TEST_P(ByReferenceKeyframe, FindsFramesFarFromTheLastPoseAmongWrongMatches) {
   Frame frame = *world_.Observe(FrameId(1000), truth).frame;
   frame.words.clear();
   std::ranges::fill(frame.features.depth, 0.0F);
-  std::ranges::fill(frame.features.right_u, -1.0F);
   std::vector<Keypoint>& keypoints = frame.features.keypoints;
   for (size_t i = 0; i + 2 < keypoints.size(); i += 3) {
     std::swap(keypoints[i].undistorted, keypoints[i + 2].undistorted);

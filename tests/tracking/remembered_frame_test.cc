@@ -128,7 +128,6 @@ TEST_F(RefinePosesTest, RemembersTheLandmarksThatWereFound) {
   ASSERT_EQ(features.keypoints.size(), Seen().size());
   EXPECT_EQ(features.keypoints.back().undistorted, all.keypoints.back().undistorted);
   EXPECT_EQ(features.keypoints.back().level, all.keypoints.back().level);
-  EXPECT_EQ(features.right_u.back(), all.right_u.back());
 }
 
 TEST_F(RefinePosesTest, RemembersAtMost400Landmarks) {

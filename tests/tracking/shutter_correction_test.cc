@@ -338,7 +338,6 @@ class TurningCamera : public testing::Test {
     const size_t count = frame->features.size();
     frame->features.descriptors.resize(count);
     frame->features.depth.resize(count, 0.0F);
-    frame->features.right_u.resize(count, -1.0F);
     frame_ = frame;
     auto before = std::make_shared<Frame>();
     before->id = FrameId(0);

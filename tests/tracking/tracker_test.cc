@@ -37,7 +37,6 @@ std::shared_ptr<Frame> Select(const Frame& frame, const std::vector<uint32_t>& k
     selected->features.keypoints.push_back(frame.features.keypoints[i]);
     selected->features.descriptors.push_back(frame.features.descriptors[i]);
     selected->features.depth.push_back(frame.features.depth[i]);
-    selected->features.right_u.push_back(frame.features.right_u[i]);
   }
   return selected;
 }
@@ -370,7 +369,6 @@ class TwinTest : public TrackerTest {
       features.keypoints.push_back(twin);
       features.descriptors.push_back(descriptor);
       features.depth.push_back(features.depth[i]);
-      features.right_u.push_back(features.right_u[i]);
     }
     RebuildGrid(world_.sensor(), *frame);
     return frame;
@@ -1035,7 +1033,6 @@ TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) 
       frame->features.keypoints.push_back(still->features.keypoints[i]);
       frame->features.descriptors.push_back(still->features.descriptors[i]);
       frame->features.depth.push_back(still->features.depth[i]);
-      frame->features.right_u.push_back(still->features.right_u[i]);
       frame->words.push_back(still->words[i]);
       ++added;
     }

@@ -58,8 +58,4 @@ struct DepthOptions {
 // the image. Throws CheckError unless `depth` is CV_16UC1 or CV_32FC1, as in ImageInput.
 float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre);
 
-// Column in the right image of the virtual stereo pair, u - bf / depth, in px; -1 if the depth is
-// unknown.
-float VirtualRight(float u, float depth, double bf);
-
 }  // namespace hullslam

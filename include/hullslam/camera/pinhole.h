@@ -29,10 +29,10 @@ enum class LensModel {
 };
 
 // Pinhole camera with the lens through which its raw images were taken. For RGB-D it also has the
-// baseline of the virtual stereo pair. All SLAM mathematics uses undistorted pixels with the same
-// intrinsics, and raw pixels appear only where images are read. The undistorted image of a fisheye
-// lens is as exact as any other, but its pixels are stretched towards the rim, so the sigmas of
-// its keypoints and lines follow DistortionJacobian().
+// baseline of the virtual stereo pair. All SLAM mathematics projects to undistorted pixels with the
+// same intrinsics. Undistortion stretches the image, most of all at the rim of a wide lens, so
+// errors, windows and distances are measured in raw pixels, for every lens: an undistorted offset
+// times DistortionJacobian() is a raw one.
 struct PinholeCamera {
   double fx = 0.0;  // px
   double fy = 0.0;
@@ -71,6 +71,8 @@ struct PinholeCamera {
   }
 
   bool IsFisheye() const { return lens != LensModel::kBrown; }
+  // Whether parts of the raw image are beyond kMostAngle.
+  bool IsWide() const;
   bool IsDistorted() const;
 
   // Undistorted pixel of a point in the camera frame (metres, z forward). Requires z > 0.
@@ -98,15 +100,6 @@ struct PinholeCamera {
   // directions have the same pixel beyond. Infinite if it does not.
   double FoldRadius() const;
 
-  // The column in the virtual right image that a keypoint at column `u` would have at infinity. The
-  // columns of a fisheye's undistorted image run far to both sides of 0, where FrameFeatures has
-  // the keypoints without depth, so all its keypoints are compared as if they had the same column,
-  // the disparity of something 2 cm away.
-  double FarRight(double u) const {
-    constexpr double kNearest = 0.02;  // m
-    return IsFisheye() ? bf / kNearest : u;
-  }
-
   // Smallest axis-aligned box that contains the undistorted image.
   struct Bounds {
     double min_x = 0.0;
@@ -118,6 +111,9 @@ struct PinholeCamera {
     }
   };
   Bounds UndistortedBounds() const;
+  Bounds RawBounds() const {
+    return {.max_x = static_cast<double>(width), .max_y = static_cast<double>(height)};
+  }
 
   // The reason why this cannot be the camera of a real image, with its key: a number that is not
   // finite or out of range, a distortion that has no inverse at a pixel of the image, or an

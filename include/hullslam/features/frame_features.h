@@ -15,8 +15,7 @@ namespace hullslam {
 struct FrameFeatures {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
-  std::vector<float> depth;    // m along the optical axis, 0 where unknown
-  std::vector<float> right_u;  // px in the virtual right image, -1 where the depth is unknown
+  std::vector<float> depth;  // m along the optical axis, 0 where unknown
   FeatureGrid grid;
 
   size_t size() const { return keypoints.size(); }

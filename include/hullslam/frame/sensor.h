@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
@@ -43,33 +44,21 @@ struct Sensor {
   cv::Mat mask_all;
   cv::Mat mask_all_right;
 
-  // Whether an undistorted pixel is in the image and is used.
-  bool Sees(const Eigen::Vector2d& pixel) const {
-    return bounds.Contains(pixel) &&
-           (!camera.IsFisheye() || camera.SeesRaw(camera.Distort(pixel))) &&
-           (mask_all.empty() || !IsIgnored(camera.Distort(pixel)));
+  // The raw pixel of an undistorted one. Null if it is outside of the image or is not used.
+  std::optional<Eigen::Vector2d> RawPixel(const Eigen::Vector2d& pixel) const {
+    if (!bounds.Contains(pixel)) {
+      return std::nullopt;
+    }
+    const Eigen::Vector2d raw = camera.Distort(pixel);
+    return camera.SeesRaw(raw) && !IsIgnored(raw) ? std::optional(raw) : std::nullopt;
   }
+  bool Sees(const Eigen::Vector2d& pixel) const { return RawPixel(pixel).has_value(); }
   // Whether `mask_all` ignores a raw pixel of the image.
   bool IsIgnored(const Eigen::Vector2d& raw) const {
     const auto x = static_cast<int>(std::lround(raw.x()));
     const auto y = static_cast<int>(std::lround(raw.y()));
     return x >= 0 && y >= 0 && x < mask_all.cols && y < mask_all.rows &&
            mask_all.at<unsigned char>(y, x) == 0;
-  }
-  // The pixel in which distances in the image are measured, such as the windows of matching: the
-  // raw one of a fisheye lens, whose undistorted image is stretched, else the undistorted one.
-  Eigen::Vector2d ToGrid(const Eigen::Vector2d& pixel) const {
-    return camera.IsFisheye() ? camera.Distort(pixel) : pixel;
-  }
-  // The derivative of ToGrid().
-  Eigen::Matrix2d GridJacobian(const Eigen::Vector2d& pixel) const {
-    return camera.IsFisheye() ? camera.DistortionJacobian(pixel) : Eigen::Matrix2d::Identity();
-  }
-  // The bounds of ToGrid().
-  PinholeCamera::Bounds GridBounds() const {
-    return camera.IsFisheye() ? PinholeCamera::Bounds{.max_x = static_cast<double>(camera.width),
-                                                      .max_y = static_cast<double>(camera.height)}
-                              : bounds;
   }
 
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
