@@ -61,8 +61,7 @@ class Word:
 
 WORDS = (
     Word("lens", re.compile(r"\b(IsFisheye|LensModel|\w*Kannala\w*)\b"),
-         {"camera", "files", "settings", "map_files"},
-         {"estimators", "eval", "exports", "frame", "mapping", "objects", "optim", "tracking"}),
+         {"camera", "files", "settings", "map_files"}),
     Word("stereo sensor", re.compile(r"\bkStereo\b"),
          {"frame", "system", "sequences", "datasets", "map_files"}, {"exports", "run"}),
     # Also names of formats: of pose files (exports, results), of calibrations (settings); and the tool

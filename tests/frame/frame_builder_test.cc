@@ -287,13 +287,14 @@ TEST_F(FrameBuilderTest, DepthIsThatOfTheRawPixel) {
   EXPECT_LT(unknown, static_cast<int>(features.size()));
 }
 
-TEST_F(FrameBuilderTest, TheGridFindsEveryKeypointWhereItIsUndistorted) {
+TEST_F(FrameBuilderTest, TheGridFindsEveryKeypointAtItsRawPixel) {
   const auto frame = Build(MakeImage());
   const FrameFeatures& features = frame->features;
   for (uint32_t i = 0; i < features.size(); ++i) {
     const Keypoint& keypoint = features.keypoints[i];
     std::vector<uint32_t> found;
-    features.grid.FindNear(features.keypoints, keypoint.undistorted, 0.5f, keypoint.level,
+    const Eigen::Vector2d raw = sensor_.camera.Distort(keypoint.undistorted.cast<double>());
+    features.grid.FindNear(features.keypoints, raw.cast<float>(), 0.5f, keypoint.level,
                            keypoint.level, found);
     EXPECT_NE(std::find(found.begin(), found.end(), i), found.end()) << i;
   }

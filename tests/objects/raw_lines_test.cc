@@ -39,10 +39,10 @@ TEST(RawLines, DistancesAreThoseOfTheRawImage) {
   }
 }
 
-TEST(RawLines, OfAPinholeAreTheSame) {
+TEST(RawLines, WithoutDistortionAreTheSame) {
   PinholeCamera camera = FisheyeCamera();
   camera.lens = LensModel::kBrown;
-  camera.k3 = camera.k4 = 0.0;
+  camera.k1 = camera.k2 = camera.k3 = camera.k4 = 0.0;
   const Detection detection = SquareAt(camera, {500.0, 200.0});
   const auto lines = ScaleToRaw(camera, detection, detection.lines);
   EXPECT_EQ(lines[0].line.normal, detection.lines[0].line.normal);

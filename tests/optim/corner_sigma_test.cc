@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "hullslam/geometry/rigid3.h"
 #include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
 
@@ -94,11 +96,20 @@ TEST(CornerSigma, DoesNotDependOnTheModelOfTheLens) {
 TEST(CornerSigma, TakesTheCornersOfTheRawImage) {
   PinholeCamera barrel = kMadeCamera;
   barrel.k1 = -0.2;
-  const Eigen::Vector2d corner = barrel.Undistort({0.0, 0.0});
-  const double slope = (corner - Eigen::Vector2d(320.0, 240.0)).norm() / 500.0;
-  ASSERT_GT(slope, 0.85);
-  EXPECT_NEAR(CornerSigma(barrel, Information(0.01, 1e-9), 2.0),
-              0.01 * 500.0 * (1.0 + slope * slope), 1e-6);
+  const Eigen::Vector3d ray = barrel.Unproject(barrel.Undistort({0.0, 0.0}), 1.0);
+  ASSERT_GT(ray.head<2>().norm(), 0.85);
+  constexpr double kStep = 1e-5;
+  Eigen::Matrix<double, 2, 3> raw_by_turn;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d turn = kStep * Eigen::Vector3d::Unit(i);
+    raw_by_turn.col(i) = (barrel.Distort(barrel.Project(ExpSo3(turn) * ray)) -
+                          barrel.Distort(barrel.Project(ExpSo3(-turn) * ray))) /
+                         (2.0 * kStep);
+  }
+  const double largest = std::sqrt(
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(raw_by_turn * raw_by_turn.transpose())
+          .eigenvalues()[1]);
+  EXPECT_NEAR(CornerSigma(barrel, Information(0.01, 1e-9), 2.0), 0.01 * largest, 1e-4);
 }
 
 TEST(CornerSigma, IsInfiniteForAPoseThatIsNotDetermined) {
