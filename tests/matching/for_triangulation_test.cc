@@ -24,16 +24,17 @@ Eigen::Matrix3d SideBySide() {
 std::vector<Match> MatchAll(const FrameFeatures& a, const FrameFeatures& b,
                             const Eigen::Matrix3d& fundamental,
                             const Eigen::Vector2d& epipole = kFarEpipole,
+                            const PinholeCamera& camera = {},
                             const TriangulationSearch& search = {}) {
   return MatchForTriangulation(a, All(a), b, All(b), fundamental, epipole,
-                               ScaleLevels::Create(8, 1.2), search);
+                               ScaleLevels::Create(8, 1.2), camera, search);
 }
 
 // The keypoint of b that matches the keypoint of a at (300, 100), whose descriptor is zero; -1 if
 // there is none.
 int FoundOnLine(const std::vector<MadeKeypoint>& b, const TriangulationSearch& search = {}) {
   const auto matches = MatchAll(MakeFeatures({{.pixel = {300.0f, 100.0f}}}), MakeFeatures(b),
-                                SideBySide(), kFarEpipole, search);
+                                SideBySide(), kFarEpipole, PinholeCamera(), search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
 }
 
