@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "frame/detection_builder.h"
+#include "frame/detection/detection_builder.h"
 
 namespace hullslam {
 namespace {

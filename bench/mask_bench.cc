@@ -12,7 +12,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "frame/detection_builder.h"
+#include "frame/detection/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 
 namespace hullslam {

@@ -23,7 +23,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 
 namespace hullslam {
 namespace {

@@ -49,6 +49,7 @@ CONTENTS = {
     "scene": "relations, questions",
     "settings": "YAML, ORB-SLAM3's keys",
     "results": "trajectories, objects, PLY",
+    "images": "PNG, JPEG, video frames",
     "sequences": "TUM, ICL, EuRoC, video",
     "datasets": "the table of data sets",
     "masks": "seven formats",

@@ -75,9 +75,8 @@ def draw(entries, count, seed):
 
 def command_of(entry):
     """The test program and its arguments."""
-    folder = pathlib.PurePath(entry["file"]).parent
-    module = folder.parent if folder.name == "comparison" else folder
-    return shlex.split(entry.get("test", f"{module.name}_tests"))
+    module = pathlib.PurePath(entry["file"]).parts[1]
+    return shlex.split(entry.get("test", f"{module}_tests"))
 
 
 def sync(top, copy):

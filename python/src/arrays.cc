@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 
 namespace hullslam::python {
 namespace {

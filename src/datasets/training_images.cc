@@ -8,7 +8,7 @@
 
 #include "features/extractor.h"
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "util/lower_case.h"
 
 namespace hullslam {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 
 namespace hullslam {
 namespace {

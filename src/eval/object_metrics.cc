@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "eval/solid_angle.h"
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
 

@@ -12,7 +12,7 @@
 
 #include "features/extractor.h"
 #include "frame/depth_source.h"
-#include "frame/frame_detector.h"
+#include "frame/detection/frame_detector.h"
 #include "frame/input_check.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "hullslam/geometry/dual_quadric.h"
+#include "images/jpeg_codec.h"
 #include "map/islands.h"
-#include "sequences/jpeg_codec.h"
 #include "util/thin.h"
 
 namespace hullslam {

@@ -12,7 +12,7 @@
 #include "map/islands.h"
 #include "map/keyframe_order.h"
 #include "mapping/sensor_rules.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "util/id_set.h"
 

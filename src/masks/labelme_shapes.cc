@@ -13,11 +13,11 @@
 #include "files/base64.h"
 #include "files/json_file.h"
 #include "files/plausible.h"
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
+#include "images/image_file.h"
 #include "masks/mask_checks.h"
-#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {

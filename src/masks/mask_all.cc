@@ -8,7 +8,7 @@
 
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 
 namespace hullslam {
 namespace {

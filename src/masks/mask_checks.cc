@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "frame/sort_outlines.h"
+#include "frame/detection/sort_outlines.h"
 #include "util/ascii.h"
 #include "util/printable.h"
 

@@ -17,12 +17,12 @@
 #include "files/json_file.h"
 #include "files/read_file.h"
 #include "files/text_rows.h"
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 #include "hullslam/frame/mask_image.h"
 #include "hullslam/util/error.h"
+#include "images/image_file.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_text.h"
-#include "sequences/image_file.h"
 #include "util/shown_text.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <opencv2/core.hpp>
 
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "objects/object_sighting.h"
 #include "objects/visibility.h"

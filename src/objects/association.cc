@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
-#include "objects/carried_hull.h"
 #include "objects/combined_similarity.h"
 #include "objects/comparison/association_measure.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/carried_hull.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "util/id_set.h"
 #include "util/sort_unique.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/polygon_overlap.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "map/islands.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "util/id_set.h"
 #include "util/sort_unique.h"

@@ -10,7 +10,7 @@
 
 #include "geometry/oriented_box.h"
 #include "geometry/polyline.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 #include "util/median.h"
 
 namespace hullslam {

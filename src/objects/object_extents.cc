@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-#include "objects/misfit.h"
+#include "objects/constraint/misfit.h"
 
 namespace hullslam {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "map/islands.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 
 namespace hullslam {

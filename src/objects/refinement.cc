@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "costs/pose_manifold.h"
-#include "objects/object_constraint.h"
+#include "objects/constraint/object_constraint.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "hullslam/util/check.h"
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 #include "util/median.h"
 
 namespace hullslam {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
-#include "objects/misfit.h"
+#include "objects/constraint/misfit.h"
 
 namespace hullslam {
 namespace {

@@ -16,7 +16,6 @@
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"
 #include "optim/bundle_points.h"
-#include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
 #include "optim/keypoint_weights.h"
 #include "optim/object_bundle.h"

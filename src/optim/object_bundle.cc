@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "objects/object_constraint.h"
+#include "objects/constraint/object_constraint.h"
 #include "util/thin.h"
 
 namespace hullslam::internal {

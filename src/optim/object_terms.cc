@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "objects/object_constraint.h"
+#include "objects/constraint/object_constraint.h"
 
 namespace hullslam::internal {
 

@@ -10,7 +10,7 @@
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
 #include "geometry/sphere_directions.h"
-#include "objects/misfit.h"
+#include "objects/constraint/misfit.h"
 
 namespace hullslam {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "geometry/sphere_directions.h"
 #include "hullslam/objects/object_constraint_options.h"
-#include "objects/misfit.h"
+#include "objects/constraint/misfit.h"
 
 namespace hullslam {
 namespace {

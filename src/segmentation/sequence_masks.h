@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "datasets/view_images.h"
-#include "frame/detection_builder.h"
+#include "frame/detection/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/segmentation/network_masks.h"
 

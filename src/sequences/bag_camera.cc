@@ -9,7 +9,7 @@
 
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "settings/rotation_matrix.h"
 #include "util/shown_text.h"
 

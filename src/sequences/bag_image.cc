@@ -15,9 +15,9 @@
 
 #include "files/byte_reader.h"
 #include "hullslam/util/error.h"
-#include "sequences/eight_bits.h"
-#include "sequences/image_file.h"
-#include "sequences/rvl_depth.h"
+#include "images/eight_bits.h"
+#include "images/image_file.h"
+#include "images/rvl_depth.h"
 #include "util/printable.h"
 
 namespace hullslam {

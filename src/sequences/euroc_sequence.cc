@@ -13,8 +13,8 @@
 
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
+#include "images/image_file.h"
 #include "sequences/euroc_states.h"
-#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"

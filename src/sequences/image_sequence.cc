@@ -11,8 +11,8 @@
 
 #include "camera/fit_depth.h"
 #include "hullslam/util/error.h"
+#include "images/image_file.h"
 #include "results/pose_file.h"
-#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {

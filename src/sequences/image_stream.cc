@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/named_images.h"
 #include "sequences/video_file.h"

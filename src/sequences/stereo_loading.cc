@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {

@@ -21,7 +21,7 @@
 #include "files/text_rows.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/named_images.h"
 #include "sequences/stereo_loading.h"

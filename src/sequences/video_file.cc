@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "sequences/ffmpeg.h"
-#include "sequences/image_file.h"
+#include "images/ffmpeg.h"
+#include "images/image_file.h"
 #include "sequences/image_list.h"
 
 extern "C" {

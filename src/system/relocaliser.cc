@@ -7,7 +7,7 @@
 #include "hullslam/util/check.h"
 #include "objects/object_index.h"
 #include "system/make_sensor.h"
-#include "tracking/confirmed_pose.h"
+#include "tracking/sources/confirmed_pose.h"
 
 namespace hullslam {
 namespace {

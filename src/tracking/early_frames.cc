@@ -11,9 +11,9 @@
 
 #include "map/islands.h"
 #include "places/wide_matches.h"
-#include "tracking/confirmed_pose.h"
 #include "tracking/last_frame.h"
 #include "tracking/shutter_correction.h"
+#include "tracking/sources/confirmed_pose.h"
 #include "util/valid_ids.h"
 
 namespace hullslam {

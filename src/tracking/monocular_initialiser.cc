@@ -14,8 +14,8 @@
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
-#include "tracking/pixel_pairs.h"
 #include "tracking/shutter_correction.h"
+#include "tracking/sources/pixel_pairs.h"
 #include "util/random_seed.h"
 #include "util/reached_by.h"
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "objects/association.h"
-#include "objects/misfit.h"
-#include "objects/object_constraint.h"
+#include "objects/constraint/misfit.h"
+#include "objects/constraint/object_constraint.h"
 
 namespace hullslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "objects/object_constraint.h"
+#include "objects/constraint/object_constraint.h"
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
 #include "util/thin.h"

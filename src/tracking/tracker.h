@@ -12,15 +12,15 @@
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
 #include "objects/request_memory.h"
-#include "tracking/confirmed_pose.h"
 #include "tracking/early_frames.h"
 #include "tracking/join_requests.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/monocular_initialiser.h"
-#include "tracking/pose_source.h"
 #include "tracking/shutter_correction.h"
 #include "tracking/sighting_counter.h"
+#include "tracking/sources/confirmed_pose.h"
+#include "tracking/sources/pose_source.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {

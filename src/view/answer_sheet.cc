@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 
 namespace hullslam {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
+#include "images/jpeg_codec.h"
 #include "sequences/frame_colour.h"
-#include "sequences/jpeg_codec.h"
 #include "util/thin.h"
 
 namespace hullslam {

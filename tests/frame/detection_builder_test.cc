@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/detection_builder.h"
+#include "frame/detection/detection_builder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/detection_region.h"
+#include "frame/detection/detection_region.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/dynamic_mask.h"
+#include "frame/detection/dynamic_mask.h"
 
 #include <gtest/gtest.h>
 

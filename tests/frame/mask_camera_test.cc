@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/mask_camera.h"
+#include "frame/detection/mask_camera.h"
 
 #include <gtest/gtest.h>
 

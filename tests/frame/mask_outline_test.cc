@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 
 #include <gtest/gtest.h>
 

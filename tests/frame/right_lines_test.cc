@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/right_lines.h"
+#include "frame/detection/right_lines.h"
 
 #include <gtest/gtest.h>
 

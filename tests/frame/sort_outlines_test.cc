@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/sort_outlines.h"
+#include "frame/detection/sort_outlines.h"
 
 #include <gtest/gtest.h>
 

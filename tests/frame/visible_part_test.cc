@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/visible_part.h"
+#include "frame/detection/visible_part.h"
 
 #include <gtest/gtest.h>
 

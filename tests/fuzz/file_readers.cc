@@ -21,6 +21,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/settings/preset.h"
 #include "hullslam/settings/settings.h"
+#include "images/image_file.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map_files/map_parser.h"
@@ -38,7 +39,6 @@
 #include "segmentation/network_layout.h"
 #include "segmentation/onnx_file.h"
 #include "segmentation/suppress_overlaps.h"
-#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {

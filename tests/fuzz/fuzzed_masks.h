@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "frame/detection_builder.h"
+#include "frame/detection/detection_builder.h"
 #include "fuzz/fuzzed_input.h"
 #include "hullslam/masks/open_masks.h"
 

@@ -12,8 +12,8 @@
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
+#include "images/rvl_depth.h"
 #include "sequences/euroc_states.h"
-#include "sequences/rvl_depth.h"
 #include "settings/stereo_settings.h"
 
 namespace hullslam {

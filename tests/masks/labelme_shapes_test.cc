@@ -9,9 +9,9 @@
 #include <string>
 
 #include "files/base64.h"
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 #include "geometry/polyline.h"
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "sequences/image_file.h"
+#include "images/image_file.h"
 #include "sequences/resized_images.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"

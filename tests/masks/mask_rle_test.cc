@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "frame/mask_outline.h"
+#include "frame/detection/mask_outline.h"
 
 namespace hullslam {
 namespace {

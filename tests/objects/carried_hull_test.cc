@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/carried_hull.h"
+#include "objects/constraint/carried_hull.h"
 
 #include <gtest/gtest.h>
 

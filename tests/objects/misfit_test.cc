@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/misfit.h"
+#include "objects/constraint/misfit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/object_constraint.h"
+#include "objects/constraint/object_constraint.h"
 
 #include <gtest/gtest.h>
 

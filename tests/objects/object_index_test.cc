@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/polygon_overlap.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/made_objects.h"
-#include "objects/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "support/random_geometry.h"
 

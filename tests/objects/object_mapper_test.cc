@@ -7,10 +7,10 @@
 
 #include "map/invariants.h"
 #include "map/spanning_tree.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/made_objects.h"
-#include "objects/point_statistics.h"
 #include "objects/refinement.h"
 
 namespace hullslam {

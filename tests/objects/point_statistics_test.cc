@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/point_statistics.h"
+#include "objects/constraint/point_statistics.h"
 
 #include <gtest/gtest.h>
 

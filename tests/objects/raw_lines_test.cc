@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/raw_lines.h"
+#include "objects/constraint/raw_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include <numbers>
 
+#include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
-#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {

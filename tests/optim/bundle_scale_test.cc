@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/bundle_scale.h"
+#include "optim/bundle_result.h"
 
 #include <gtest/gtest.h>
 

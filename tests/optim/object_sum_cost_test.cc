@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "objects/constraint/object_constraint.h"
 #include "objects/made_objects.h"
-#include "objects/object_constraint.h"
 #include "optim/bundle_adjustment.h"
 #include "support/random_geometry.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/confirmed_pose.h"
+#include "tracking/sources/confirmed_pose.h"
 
 #include <gtest/gtest.h>
 

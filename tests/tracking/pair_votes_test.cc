@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/pair_votes.h"
+#include "tracking/sources/pair_votes.h"
 
 #include <gtest/gtest.h>
 

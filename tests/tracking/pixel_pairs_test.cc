@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/pixel_pairs.h"
+#include "tracking/sources/pixel_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
-#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {

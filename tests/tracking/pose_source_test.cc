@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/pose_source.h"
+#include "tracking/sources/pose_source.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
-#include "tracking/pose_of_matches.h"
 #include "tracking/pose_refinement.h"
+#include "tracking/sources/pose_of_matches.h"
 #include "util/id_set.h"
 
 namespace hullslam {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "map/spanning_tree.h"
+#include "objects/constraint/raw_lines.h"
 #include "objects/made_objects.h"
-#include "objects/raw_lines.h"
 #include "support/fisheye_camera.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"

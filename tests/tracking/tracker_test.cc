@@ -19,7 +19,7 @@
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
 #include "support/unknown_points.h"
-#include "tracking/pose_source.h"
+#include "tracking/sources/pose_source.h"
 
 namespace hullslam {
 namespace {

@@ -14,7 +14,8 @@
 
 #include "hullslam/datasets/input_checks.h"
 #include "hullslam/masks/open_masks.h"
-#include "masks/mask_overlay.h"
+#include "images/image_file.h"
+#include "view/mask_overlay.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
@@ -25,7 +26,6 @@
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "segmentation/sequence_masks.h"
-#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {
