@@ -75,7 +75,8 @@ def draw(entries, count, seed):
 
 def command_of(entry):
     """The test program and its arguments."""
-    module = pathlib.PurePath(entry["file"]).parts[1]
+    parts = pathlib.PurePath(entry["file"]).parts
+    module = parts[2] if parts[0] == "include" else parts[1]
     return shlex.split(entry.get("test", f"{module}_tests"))
 
 

@@ -15,7 +15,6 @@
 #include "hullslam/datasets/input_checks.h"
 #include "hullslam/masks/open_masks.h"
 #include "images/image_file.h"
-#include "view/mask_overlay.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
@@ -26,6 +25,7 @@
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "segmentation/sequence_masks.h"
+#include "view/mask_overlay.h"
 
 namespace hullslam {
 namespace {

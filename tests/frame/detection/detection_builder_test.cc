@@ -10,11 +10,11 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "frame/made_masks.h"
 #include "geometry/convex_hull.h"
 #include "geometry/polyline.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
-#include "made_masks.h"
 #include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
 #include "support/square_mask.h"
