@@ -45,6 +45,7 @@ CONTENTS = {
     "loop": "loops, returns, islands",
     "system": "class System, pipelines",
     "report": "lost frames, objects",
+    "calibration": "camera of recordings",
     "eval": "ATE, RPE, SIoU",
     "scene": "relations, questions",
     "settings": "YAML, ORB-SLAM3's keys",

@@ -77,6 +77,8 @@ class _depth:
     """error of a keypoint of pyramid level 0 in bundle adjustment, px (a number from 0.01 to 100; default 0.8)"""
     adjustment_rule: Literal["hullslam", "orb_slam2"]
     """weights and loss of keypoints without depth in bundle adjustment: measured precision and Cauchy's loss, or fixed sigmas and Huber's loss (one of: hullslam, orb_slam2; default hullslam)"""
+    disparity_offset: float
+    """disparity of depth images minus the true one, px (a number from -20 to 20; default 0)"""
     disparity_sigma: float
     """error of a depth, as an error of the disparity Camera.bf / depth, px (a number from 0.01 to 100; default 1)"""
     model: Literal["disparity", "right_column"]

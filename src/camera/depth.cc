@@ -37,6 +37,8 @@ void DepthOptions::Bind(OptionTable& options) {
               "units of the 16-bit depth images per metre");
   options.Add("ThDepth", &close_baselines, Range::Between(1e-3, 1e6),
               "largest distance of a close point, in units of the baseline");
+  options.Add("depth.disparity_offset", &disparity_offset, Range::Between(-20.0, 20.0),
+              "disparity of depth images minus the true one, px");
   error.Bind(options);
 }
 

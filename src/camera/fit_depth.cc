@@ -95,4 +95,29 @@ cv::Mat FitDepth(const cv::Mat& depth, const cv::Size& size) {
   return fitted;
 }
 
+cv::Mat WithoutDisparityOffset(const cv::Mat& depth, double offset, double bf,
+                               double units_per_metre) {
+  if (offset == 0.0) {
+    return depth;
+  }
+  // 1 / z = 1 / z_measured - offset / bf, in the units of the image.
+  const bool is_metric = depth.type() == CV_32FC1;
+  const double shift = offset / (bf * (is_metric ? 1.0 : units_per_metre));
+  cv::Mat corrected(depth.size(), depth.type());
+  const auto correct = [&](auto value, const int* place) {
+    using Value = decltype(value);
+    const auto measured = static_cast<double>(depth.at<Value>(place));
+    const double inverse = measured > 0.0 ? 1.0 / measured - shift : 0.0;
+    const double units = inverse > 0.0 ? 1.0 / inverse : 0.0;
+    corrected.at<Value>(place) = cv::saturate_cast<Value>(units);
+  };
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const std::array<int, 2> place = {y, x};
+      is_metric ? correct(float(), place.data()) : correct(uint16_t(), place.data());
+    }
+  }
+  return corrected;
+}
+
 }  // namespace hullslam

@@ -16,4 +16,10 @@ bool HaveSameShape(const cv::Size& depth, const cv::Size& colour);
 // it is.
 cv::Mat FitDepth(const cv::Mat& depth, const cv::Size& size);
 
+// The depth image with the true disparities bf / z, if all of it are too large by `offset` (px).
+// Depths whose true disparity is not positive become unknown. `bf` is in m px. The image itself if
+// the offset is 0.
+cv::Mat WithoutDisparityOffset(const cv::Mat& depth, double offset, double bf,
+                               double units_per_metre);
+
 }  // namespace hullslam

@@ -124,11 +124,14 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool
   CheckGreyImage("image", image.grey, sensor_.camera);
   source_->CheckImages(image);
   check_.CheckDepth(image.depth);
-  if (image.depth.empty() || image.depth.size() == image.grey.size()) {
+  const bool is_fitted = image.depth.size() == image.grey.size() && depth_.disparity_offset == 0.0;
+  if (image.depth.empty() || is_fitted) {
     return BuildFitted(image, runner, awaits_masks);
   }
   ImageInput fitted = image;
-  fitted.depth = FitDepth(image.depth, image.grey.size());
+  fitted.depth =
+      WithoutDisparityOffset(FitDepth(image.depth, image.grey.size()), depth_.disparity_offset,
+                             sensor_.camera.bf, depth_.units_per_metre);
   return BuildFitted(fitted, runner, awaits_masks);
 }
 

@@ -181,6 +181,19 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
   return corrected;
 }
 
+// The correction is a few pixels and changes slowly over the image, so repeating it with the last
+// result converges in a few steps.
+Eigen::Vector2d BeforeCorrection(const Sensor& sensor, const ShutterMotion& motion,
+                                 const Eigen::Vector2d& corrected, size_t index) {
+  constexpr int kSteps = 6;
+  const UndoMotion undo(sensor, motion.velocity);
+  Eigen::Vector2d read = corrected;
+  for (int i = 0; i < kSteps; ++i) {
+    read += corrected - undo.Move(read, motion.inverse_depths[index]);
+  }
+  return read;
+}
+
 void CorrectDetections(const Sensor& sensor, const ShutterMotion& motion,
                        std::vector<Detection>& detections) {
   const double of_image = MedianOfKnown(motion.inverse_depths);

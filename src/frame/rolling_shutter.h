@@ -42,6 +42,11 @@ struct ShutterMotion {
   std::vector<double> inverse_depths;  // one per keypoint, 0 where it is unknown
 };
 
+// The undistorted pixel in the image as read of the keypoint `index`, which was corrected to
+// `corrected`.
+Eigen::Vector2d BeforeCorrection(const Sensor& sensor, const ShutterMotion& motion,
+                                 const Eigen::Vector2d& corrected, size_t index);
+
 // Corrects detections of the frame as read in the same way. They may come later than the frame
 // (Frame::shutter).
 void CorrectDetections(const Sensor& sensor, const ShutterMotion& motion,

@@ -78,6 +78,9 @@ void AddGroundtruth(CLI::App& app, const DatasetHelp& help, RunArguments& argume
 void AddSensorArguments(CLI::App& app, const DatasetHelp& help, bool has_depth, bool has_pairs,
                         RunArguments& arguments) {
   AddSettingsArgument(app, help.settings, arguments.settings);
+  app.add_flag("--self-calibrate", arguments.self_calibrate,
+               "first calibrate the camera on these images, as `hullslam calibrate` does: from "
+               "--settings on if it is given, else from nothing");
   AddPresetArgument(app, arguments.preset);
   AddVocabularyArgument(app, arguments.vocabulary);
   if (has_depth) {

@@ -27,6 +27,7 @@ struct RunArguments {
   std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
   std::filesystem::path groundtruth;   // empty: that of the sequence; "none": none
   FrameSelection selection;
+  bool self_calibrate = false;
   std::string preset;                      // a name or a file; empty: none
   std::filesystem::path masks;             // empty: none
   std::string masks_format;                // empty: detected

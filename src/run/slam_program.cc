@@ -2,13 +2,17 @@
 #include "run/slam_program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "run/calibration_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
+#include "run/interrupt.h"
 #include "run/live_output.h"
 #include "run/messages.h"
 #include "run/program.h"
@@ -29,8 +33,40 @@ bool Parse(CLI::App& app, int argc, char** argv) {
   return ParseCommandLine(app, argc, pointers.data());
 }
 
-int RunOnDataset(const Dataset& dataset, const RunArguments& arguments,
-                 const DatasetChoices& choices) {
+// Calibrates the camera on the images of the run, and adds its numbers to the settings: those of
+// --set that the user gives come after them.
+void SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoices& choices) {
+  constexpr size_t kFrames = 1200;
+  const bool is_unknown = arguments.settings.empty();
+  const bool has_field = std::ranges::any_of(dataset.options, [](const DatasetOption& option) {
+    return std::string_view(option.key) == "fov";
+  });
+  if (is_unknown && has_field) {
+    choices.try_emplace("fov", kAnyFieldOfView);
+  }
+  const CalibratedRun calibrated =
+      RunCalibration({.sequences = {arguments.sequence},
+                      .any = {.sensor = arguments.sensor, .choices = choices},
+                      .settings = arguments.settings,
+                      .overrides = arguments.overrides,
+                      .vocabulary = arguments.vocabulary,
+                      .selection = arguments.selection,
+                      .is_unknown = is_unknown,
+                      .max_frames = kFrames,
+                      .is_quiet = arguments.quiet});
+  if (!arguments.quiet) {
+    PrintCalibration(calibrated);
+  }
+  std::vector<std::string> overrides = OverridesOf(calibrated.options);
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  arguments.overrides = std::move(overrides);
+}
+
+int RunOnDataset(const Dataset& dataset, RunArguments arguments, DatasetChoices choices) {
+  if (arguments.self_calibrate) {
+    CatchInterrupts();
+    SelfCalibrate(dataset, arguments, choices);
+  }
   OpenedDataset opened = OpenDatasetLoudly(dataset, {.path = arguments.sequence,
                                                      .sensor = arguments.sensor,
                                                      .settings = arguments.settings,

@@ -48,6 +48,8 @@ struct DepthErrorOptions {
 struct DepthOptions {
   double units_per_metre = 5000.0;  // units of a 16-bit depth image per metre
   double close_baselines = 40.0;    // depths up to this many baselines count as close
+  // The disparity bf / z of depth images minus the true one, px, as `hullslam calibrate` finds it.
+  double disparity_offset = 0.0;
   DepthErrorOptions error;
 
   // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`, and those of the error.

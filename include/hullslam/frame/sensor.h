@@ -61,6 +61,7 @@ struct Sensor {
            mask_all.at<unsigned char>(y, x) == 0;
   }
 
+  bool IsStereo() const { return kind == SensorKind::kStereo; }
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
   // Baseline of the stereo pair, for RGB-D a virtual one, m; 0 for a monocular camera.
   double baseline() const { return IsMonocular() ? 0.0 : camera.bf / camera.fx; }

@@ -15,6 +15,7 @@ constexpr const char* kConvert = "Use the results in other programs";
 
 constexpr std::array kCommands = {
     Command{kRun, "run", "runs SLAM on a sequence of any kind", RunRun},
+    Command{kPrepare, "calibrate", "calibrates a camera from recordings of anything", RunCalibrate},
     Command{kPrepare, "check-masks", "checks the masks of a sequence, and can draw them",
             RunCheckMasks},
     Command{kPrepare, "segment", "makes masks of images with a network", RunSegment},

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibration/camera_model.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "camera/wide_lens.h"
+
+namespace hullslam {
+namespace {
+
+using Kind = CameraParameter::Kind;
+
+// The step of a coefficient of the lens: by numbers, since each lens has others.
+double StepOfCoefficient(const CameraModel& model, double PinholeCamera::*field) {
+  const PinholeCamera& camera = model.camera;
+  constexpr double kSmall = 1e-4;
+  CameraModel moved = model;
+  moved.camera.*field += kSmall;
+  // 0.9 of the way to a corner, where features still are.
+  const Eigen::Vector2d corner(0.05 * camera.width, 0.05 * camera.height);
+  const Eigen::Vector2d undistorted = camera.Undistort(corner);
+  const double change = (moved.camera.Distort(undistorted) - camera.Distort(undistorted)).norm();
+  return kSmall / std::max(change, 1e-9);
+}
+
+}  // namespace
+
+double CameraModel::ExposureOf(const Eigen::Vector2d& raw) const {
+  const double share = readout_direction == ReadoutDirection::kRows
+                           ? raw.y() / std::max(1, camera.height - 1)
+                           : raw.x() / std::max(1, camera.width - 1);
+  return readout_time * (share - 0.5);
+}
+
+Eigen::Vector3d MovedPoint(const Eigen::Vector3d& point, const PointVelocity& velocity,
+                           double seconds) {
+  const Eigen::Vector3d speed = velocity.angular.cross(point) + velocity.linear;
+  return point + seconds * speed + 0.5 * seconds * seconds * velocity.angular.cross(speed);
+}
+
+Eigen::Vector2d CameraModel::Project(const Eigen::Vector3d& point, const PointVelocity& velocity,
+                                     double seconds) const {
+  return camera.Distort(camera.Project(MovedPoint(point, velocity, seconds)));
+}
+
+double CameraParameter::ValueIn(const CameraModel& model) const {
+  switch (kind) {
+    case Kind::kFocalLength:
+      return model.camera.fx;
+    case Kind::kField:
+      return model.camera.*field;
+    case Kind::kReadout:
+      return model.readout_time;
+    case Kind::kDisparityOffset:
+      return model.disparity_offset;
+    case Kind::kDepthScale:
+      return model.depth_scale;
+  }
+  return 0.0;
+}
+
+void CameraParameter::Move(double steps, CameraModel& model) const {
+  switch (kind) {
+    case Kind::kFocalLength: {
+      // In log f, so that it stays positive.
+      const double factor = std::exp(steps * step / model.camera.fx);
+      model.camera.fx *= factor;
+      model.camera.fy *= factor;
+      model.camera.bf *= model.is_pair ? factor : 1.0;
+      return;
+    }
+    case Kind::kField:
+      model.camera.*field += steps * step;
+      return;
+    case Kind::kReadout:
+      model.readout_time += steps * step;
+      return;
+    case Kind::kDisparityOffset:
+      model.disparity_offset += steps * step;
+      return;
+    case Kind::kDepthScale:
+      model.depth_scale *= std::exp(steps * step);
+      return;
+  }
+}
+
+std::vector<CameraParameter> ParametersOf(const CameraModel& model, const CalibrationChoice& choice,
+                                          bool has_depth, double speed) {
+  const PinholeCamera& camera = model.camera;
+  std::vector<CameraParameter> parameters;
+  if (choice.focal_length) {
+    const double half_diagonal = 0.5 * std::hypot(camera.width, camera.height);
+    parameters.push_back({.kind = Kind::kFocalLength,
+                          .field = nullptr,
+                          .name = "fx",
+                          .unit = "px",
+                          .step = camera.fx / half_diagonal});
+  }
+  const auto add = [&](const char* name, double PinholeCamera::*field, const char* unit,
+                       double step) {
+    parameters.push_back(
+        {.kind = Kind::kField, .field = field, .name = name, .unit = unit, .step = step});
+  };
+  if (choice.principal_point) {
+    add("cx", &PinholeCamera::cx, "px", 1.0);
+    add("cy", &PinholeCamera::cy, "px", 1.0);
+  }
+  if (choice.distortion) {
+    const auto add_coefficient = [&](std::string_view name, double PinholeCamera::*field) {
+      add(std::string(name).c_str(), field, "", StepOfCoefficient(model, field));
+    };
+    if (const WideModel* const wide = FindWideModel(camera.lens)) {
+      for (const WideModel::Coefficient& one : wide->coefficients) {
+        add_coefficient(one.name, one.field);
+      }
+    } else {
+      struct Coefficient {
+        const char* name;
+        double PinholeCamera::*field;
+        bool is_always;
+      };
+      constexpr std::array<Coefficient, 8> kBrown = {{{"k1", &PinholeCamera::k1, true},
+                                                      {"k2", &PinholeCamera::k2, true},
+                                                      {"p1", &PinholeCamera::p1, true},
+                                                      {"p2", &PinholeCamera::p2, true},
+                                                      {"k3", &PinholeCamera::k3, false},
+                                                      {"k4", &PinholeCamera::k4, false},
+                                                      {"k5", &PinholeCamera::k5, false},
+                                                      {"k6", &PinholeCamera::k6, false}}};
+      for (const Coefficient& one : kBrown) {
+        if (one.is_always || camera.*one.field != 0.0) {
+          add_coefficient(one.name, one.field);
+        }
+      }
+    }
+  }
+  if (choice.readout && speed > 0.0) {
+    // At the border a row is exposed half of the readout before or after the middle.
+    parameters.push_back({.kind = Kind::kReadout,
+                          .field = nullptr,
+                          .name = "readout_time",
+                          .unit = "s",
+                          .step = 2.0 / speed});
+  }
+  if (choice.disparity && has_depth) {
+    parameters.push_back({.kind = Kind::kDisparityOffset,
+                          .field = nullptr,
+                          .name = "disparity_offset",
+                          .unit = "px",
+                          .step = 1.0});
+  }
+  if (has_depth && !model.is_pair) {
+    parameters.push_back({.kind = Kind::kDepthScale,
+                          .field = nullptr,
+                          .name = "depth_scale",
+                          .unit = "",
+                          .step = kDepthScaleSigma});
+  }
+  return parameters;
+}
+
+}  // namespace hullslam

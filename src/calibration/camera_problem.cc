@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibration/camera_problem.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "camera/point_measurement.h"
+#include "optim/robust.h"
+#include "util/median.h"
+
+namespace hullslam {
+namespace {
+
+using ByCamera = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kDifference = 1e-2;  // steps of a parameter, for numerical derivatives
+constexpr double kFixed = 1e9;        // weight of what does not move, relative to the largest
+
+// (raw error, disparity error) in sigmas. Infinite for a point that is not in front of the camera.
+Eigen::Vector3d ResidualOf(const CalibrationProblem& problem, const CameraModel& model,
+                           const PointVelocity& velocity, const CalibrationObservation& seen,
+                           const Eigen::Vector3d& in_camera) {
+  const Eigen::Vector3d moved = MovedPoint(in_camera, velocity, model.ExposureOf(seen.raw));
+  if (moved.z() < kMinDepth) {
+    return Eigen::Vector3d::Constant(kInfinite);
+  }
+  Eigen::Vector3d residual;
+  residual.head<2>() = (model.camera.Distort(model.camera.Project(moved)) - seen.raw) / seen.sigma;
+  residual.z() = seen.disparity > 0.0 ? (model.camera.bf / (model.depth_scale * moved.z()) +
+                                         model.disparity_offset - seen.disparity) /
+                                            problem.disparity_sigma
+                                      : 0.0;
+  return residual;
+}
+
+// The derivative of ResidualOf by the point in the camera frame.
+Eigen::Matrix3d ByPoint(const CalibrationProblem& problem, const CameraModel& model,
+                        const PointVelocity& velocity, const CalibrationObservation& seen,
+                        const Eigen::Vector3d& in_camera) {
+  const double seconds = model.ExposureOf(seen.raw);
+  const Eigen::Vector3d moved = MovedPoint(in_camera, velocity, seconds);
+  const Eigen::Matrix3d turn = Skew(velocity.angular);
+  const Eigen::Matrix3d moved_by_point =
+      Eigen::Matrix3d::Identity() + seconds * turn + 0.5 * seconds * seconds * turn * turn;
+  const Eigen::Matrix3d projected = ProjectRgbdJacobian(model.camera, moved);
+  Eigen::Matrix3d derivative;
+  derivative.topRows<2>() = model.camera.DistortionJacobian(model.camera.Project(moved)) *
+                            projected.topRows<2>() / seen.sigma;
+  derivative.row(2) =
+      seen.disparity > 0.0
+          ? Eigen::RowVector3d(projected.row(2) / (model.depth_scale * problem.disparity_sigma))
+          : Eigen::RowVector3d::Zero();
+  return derivative * moved_by_point;
+}
+
+// The models to both sides of one, parameter by parameter.
+struct Neighbours {
+  std::vector<CameraModel> below;
+  std::vector<CameraModel> above;
+
+  Neighbours(const CameraModel& model, std::span<const CameraParameter> parameters) {
+    for (const CameraParameter& parameter : parameters) {
+      parameter.Move(-kDifference, below.emplace_back(model));
+      parameter.Move(kDifference, above.emplace_back(model));
+    }
+  }
+};
+
+ByCamera DerivativeByCamera(const CalibrationProblem& problem, const Neighbours& models,
+                            const PointVelocity& velocity, const CalibrationObservation& seen,
+                            const Eigen::Vector3d& in_camera) {
+  ByCamera derivative(3, static_cast<Eigen::Index>(models.above.size()));
+  for (size_t i = 0; i < models.above.size(); ++i) {
+    const auto residual = [&](const CameraModel& model) {
+      return ResidualOf(problem, model, velocity, seen, in_camera);
+    };
+    derivative.col(static_cast<Eigen::Index>(i)) =
+        (residual(models.above[i]) - residual(models.below[i])) / (2.0 * kDifference);
+  }
+  return derivative;
+}
+
+}  // namespace
+
+// A point with the second derivatives of the cost by it and by what it is seen with.
+struct CameraAdjustment::PointSystem {
+  struct Coupling {
+    Eigen::Index row = 0;  // of the view's parameters
+    Eigen::Matrix<double, 6, 3> block;
+  };
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inverse;
+  std::vector<Coupling> couplings;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> by_camera;
+};
+
+// What is the same for all points of a system.
+struct CameraAdjustment::Reduction {
+  const std::vector<uint8_t>& is_left_out;
+  Neighbours models;
+};
+
+size_t CalibrationProblem::CountObservations() const {
+  size_t count = 0;
+  for (const std::vector<CalibrationObservation>& seen : observations) {
+    count += seen.size();
+  }
+  return count;
+}
+
+void CalibrationProblem::Append(const CalibrationProblem& other) {
+  const auto first = static_cast<uint32_t>(views.size());
+  const uint32_t recording = views.empty() ? 0 : views.back().recording + 1;
+  for (CalibrationView view : other.views) {
+    view.recording += recording;
+    views.push_back(view);
+  }
+  points.insert(points.end(), other.points.begin(), other.points.end());
+  for (std::vector<CalibrationObservation> seen : other.observations) {
+    for (CalibrationObservation& one : seen) {
+      one.view += first;
+    }
+    observations.push_back(std::move(seen));
+  }
+  has_depth = other.has_depth;
+  disparity_sigma = other.disparity_sigma;
+}
+
+CameraAdjustment::CameraAdjustment(CalibrationProblem problem, CameraModel model,
+                                   std::vector<CameraParameter> parameters)
+    : problem_(std::move(problem)),
+      model_(model),
+      parameters_(std::move(parameters)),
+      loss_scale_(kCauchyScale) {
+  cost_ = Cost(model_, problem_.views, problem_.points);
+}
+
+double CameraAdjustment::Cost(const CameraModel& model, std::span<const CalibrationView> views,
+                              std::span<const Eigen::Vector3d> points) const {
+  const double scale = std::log(model.depth_scale) / kDepthScaleSigma;
+  double cost = 0.5 * scale * scale;
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem_.observations[i]) {
+      const CalibrationView& view = views[seen.view];
+      const double chi2 =
+          ResidualOf(problem_, model, view.velocity, seen, view.cam_from_world * points[i])
+              .squaredNorm();
+      cost += 0.5 * CauchyCost(chi2, loss_scale_);
+    }
+  }
+  return cost;
+}
+
+CameraAdjustment::PointSystem CameraAdjustment::SystemOf(size_t point, const Reduction& reduction,
+                                                         ReducedSystem& sum) const {
+  const Eigen::Index camera = camera_row();
+  const auto numbers = static_cast<Eigen::Index>(parameters_.size());
+  PointSystem system;
+  system.by_camera.setZero(numbers, 3);
+  for (const CalibrationObservation& seen : problem_.observations[point]) {
+    if (reduction.is_left_out[seen.view]) {
+      continue;
+    }
+    const CalibrationView& view = problem_.views[seen.view];
+    const Eigen::Vector3d in_camera = view.cam_from_world * problem_.points[point];
+    const Eigen::Vector3d residual = ResidualOf(problem_, model_, view.velocity, seen, in_camera);
+    const double chi2 = residual.squaredNorm();
+    if (!std::isfinite(chi2)) {
+      continue;
+    }
+    const double weight = CauchyWeight(chi2, loss_scale_);
+    const size_t rows = seen.disparity > 0.0 ? 3 : 2;
+    sum.weighted_chi2 += weight * chi2;
+    sum.weight += weight * static_cast<double>(rows);
+    const Eigen::Matrix3d by_camera_point =
+        ByPoint(problem_, model_, view.velocity, seen, in_camera);
+    Eigen::Matrix<double, 3, 6> by_pose;
+    by_pose << -by_camera_point * Skew(in_camera), by_camera_point;
+    const Eigen::Matrix3d by_point =
+        by_camera_point * view.cam_from_world.rotation.toRotationMatrix();
+    const ByCamera by_camera =
+        DerivativeByCamera(problem_, reduction.models, view.velocity, seen, in_camera);
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(seen.view);
+    system.hessian.noalias() += weight * by_point.transpose() * by_point;
+    system.gradient.noalias() += weight * by_point.transpose() * residual;
+    system.couplings.push_back({row, weight * by_pose.transpose() * by_point});
+    system.by_camera.noalias() += weight * by_camera.transpose() * by_point;
+    sum.hessian.block<6, 6>(row, row).noalias() += weight * by_pose.transpose() * by_pose;
+    sum.gradient.segment<6>(row).noalias() += weight * by_pose.transpose() * residual;
+    sum.hessian.block(camera, row, numbers, 6).noalias() +=
+        weight * by_camera.transpose() * by_pose;
+    sum.hessian.block(camera, camera, numbers, numbers).noalias() +=
+        weight * by_camera.transpose() * by_camera;
+    sum.gradient.tail(numbers).noalias() += weight * by_camera.transpose() * residual;
+  }
+  return system;
+}
+
+ReducedSystem CameraAdjustment::Reduce(double damping, const std::vector<uint8_t>& is_left_out,
+                                       std::vector<PointSystem>* points) const {
+  const Eigen::Index camera = camera_row();
+  const auto numbers = static_cast<Eigen::Index>(parameters_.size());
+  const Reduction reduction{is_left_out, Neighbours(model_, parameters_)};
+  ReducedSystem sum;
+  sum.hessian.setZero(camera + numbers, camera + numbers);
+  sum.gradient.setZero(camera + numbers);
+  if (points != nullptr) {
+    points->resize(problem_.points.size());
+  }
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    PointSystem point = SystemOf(i, reduction, sum);
+    Eigen::Matrix3d damped = point.hessian;
+    // A point in a single view without depth is not held along its ray.
+    damped.diagonal() += damping * point.hessian.diagonal() +
+                         Eigen::Vector3d::Constant(1e-12 * point.hessian.trace() + 1e-30);
+    point.inverse = damped.inverse();
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> by_camera = point.by_camera * point.inverse;
+    for (const PointSystem::Coupling& one : point.couplings) {
+      const Eigen::Matrix<double, 6, 3> solved = one.block * point.inverse;
+      sum.gradient.segment<6>(one.row).noalias() -= solved * point.gradient;
+      for (const PointSystem::Coupling& other : point.couplings) {
+        if (other.row <= one.row) {
+          sum.hessian.block<6, 6>(one.row, other.row).noalias() -= solved * other.block.transpose();
+        }
+      }
+      sum.hessian.block(camera, one.row, numbers, 6).noalias() -= by_camera * one.block.transpose();
+    }
+    sum.hessian.block(camera, camera, numbers, numbers).noalias() -=
+        by_camera * point.by_camera.transpose();
+    sum.gradient.tail(numbers).noalias() -= by_camera * point.gradient;
+    if (points != nullptr) {
+      (*points)[i] = std::move(point);
+    }
+  }
+  for (size_t i = 0; i < parameters_.size(); ++i) {
+    if (parameters_[i].IsNuisance()) {
+      const Eigen::Index row = camera + static_cast<Eigen::Index>(i);
+      sum.hessian(row, row) += 1.0;  // a step is a standard deviation
+      sum.gradient[row] += std::log(model_.depth_scale) / kDepthScaleSigma;
+    }
+  }
+  FixFrame(is_left_out, sum.hessian);
+  sum.hessian.diagonal() *= 1.0 + damping;
+  return sum;
+}
+
+void CameraAdjustment::FixFrame(const std::vector<uint8_t>& is_left_out,
+                                Eigen::MatrixXd& hessian) const {
+  const double fixed = kFixed * (hessian.diagonal().cwiseAbs().maxCoeff() + 1.0);
+  const std::vector<CalibrationView>& views = problem_.views;
+  const auto center = [&](size_t view) { return Inverse(views[view].cam_from_world).translation; };
+  const auto hold = [&](size_t view) {
+    hessian.diagonal().segment<6>(6 * static_cast<Eigen::Index>(view)).array() += fixed;
+  };
+  for (size_t begin = 0; begin < views.size();) {
+    std::optional<size_t> first;
+    size_t farthest = begin;
+    double most = 0.0;
+    size_t i = begin;
+    for (; i < views.size() && views[i].recording == views[begin].recording; ++i) {
+      if (is_left_out[i] != 0) {
+        hold(i);
+      } else if (!first) {
+        first = i;
+        hold(i);
+      } else if (const double distance = (center(i) - center(*first)).norm(); distance > most) {
+        most = distance;
+        farthest = i;
+      }
+    }
+    if (!problem_.has_depth && most > 0.0) {
+      // A step v of the translation of the view moves its centre by -R^T v.
+      const Eigen::Vector3d direction = views[farthest].cam_from_world.rotation *
+                                        (center(farthest) - center(*first)).normalized();
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(farthest) + 3;
+      hessian.block<3, 3>(row, row) += fixed * direction * direction.transpose();
+    }
+    begin = i;
+  }
+}
+
+// With a wrong camera most errors are beyond the scale of the loss, and would hardly pull. So it
+// begins with a scale that most errors are within.
+void CameraAdjustment::Solve(const Options& options) {
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    const double excess = std::max(1.0, MedianResidual());
+    loss_scale_ = kCauchyScale * excess;
+    cost_ = Cost(model_, problem_.views, problem_.points);
+    Minimise(options);
+    if (excess == 1.0) {
+      break;
+    }
+  }
+  loss_scale_ = kCauchyScale;
+  cost_ = Cost(model_, problem_.views, problem_.points);
+}
+
+void CameraAdjustment::Minimise(const Options& options) {
+  const std::vector<uint8_t> all(problem_.views.size(), 0);
+  double damping = 1e-4;
+  for (int i = 0; i < options.max_iterations; ++i) {
+    std::vector<PointSystem> points;
+    const ReducedSystem system = Reduce(damping, all, &points);
+    const Eigen::LLT<Eigen::MatrixXd> factors(system.hessian);
+    if (factors.info() != Eigen::Success) {
+      damping = std::max(10.0 * damping, 1e-6);
+      continue;
+    }
+    const Eigen::VectorXd step = -factors.solve(system.gradient);
+    CameraModel model = model_;
+    for (size_t k = 0; k < parameters_.size(); ++k) {
+      parameters_[k].Move(step[camera_row() + static_cast<Eigen::Index>(k)], model);
+    }
+    std::vector<CalibrationView> views = problem_.views;
+    for (size_t k = 0; k < views.size(); ++k) {
+      views[k].cam_from_world =
+          Retract(views[k].cam_from_world, step.segment<6>(6 * static_cast<Eigen::Index>(k)));
+    }
+    std::vector<Eigen::Vector3d> moved = problem_.points;
+    for (size_t k = 0; k < moved.size(); ++k) {
+      Eigen::Vector3d gradient = points[k].gradient;
+      for (const PointSystem::Coupling& one : points[k].couplings) {
+        gradient.noalias() += one.block.transpose() * step.segment<6>(one.row);
+      }
+      gradient.noalias() += points[k].by_camera.transpose() *
+                            step.tail(static_cast<Eigen::Index>(parameters_.size()));
+      moved[k] -= points[k].inverse * gradient;
+    }
+    const double cost = model.camera.FindFault().empty() ? Cost(model, views, moved) : kInfinite;
+    if (!(cost < cost_)) {
+      constexpr double kMostDamping = 1e8;
+      damping *= 10.0;
+      if (damping > kMostDamping) {
+        break;
+      }
+      continue;
+    }
+    const bool is_done = cost_ - cost < options.tolerance * cost_;
+    model_ = model;
+    problem_.views = std::move(views);
+    problem_.points = std::move(moved);
+    cost_ = cost;
+    damping = std::max(0.1 * damping, 1e-10);
+    if (is_done) {
+      break;
+    }
+  }
+}
+
+Eigen::MatrixXd CameraAdjustment::CameraInformation(const ReducedSystem& system,
+                                                    Eigen::VectorXd* gradient) const {
+  const Eigen::Index camera = camera_row();
+  const auto numbers = static_cast<Eigen::Index>(parameters_.size());
+  const Eigen::MatrixXd poses = system.hessian.topLeftCorner(camera, camera);
+  const Eigen::MatrixXd coupling = system.hessian.bottomLeftCorner(numbers, camera);
+  const Eigen::LLT<Eigen::MatrixXd> factors(poses);
+  const Eigen::MatrixXd solved = factors.solve(coupling.transpose());
+  Eigen::MatrixXd information = system.hessian.bottomRightCorner(numbers, numbers);
+  information = information.selfadjointView<Eigen::Lower>();
+  information -= coupling * solved;
+  if (gradient != nullptr) {
+    *gradient = system.gradient.tail(numbers) - solved.transpose() * system.gradient.head(camera);
+  }
+  return information;
+}
+
+Eigen::MatrixXd CameraAdjustment::Information() const {
+  const ReducedSystem system = Reduce(0.0, std::vector<uint8_t>(problem_.views.size(), 0), nullptr);
+  return CameraInformation(system, nullptr);
+}
+
+Eigen::VectorXd CameraAdjustment::StepWithout(const std::vector<uint8_t>& is_left_out) const {
+  const ReducedSystem system = Reduce(0.0, is_left_out, nullptr);
+  Eigen::VectorXd gradient;
+  const Eigen::MatrixXd information = CameraInformation(system, &gradient);
+  return -information.ldlt().solve(gradient);
+}
+
+double CameraAdjustment::VarianceFactor() const {
+  const ReducedSystem system = Reduce(0.0, std::vector<uint8_t>(problem_.views.size(), 0), nullptr);
+  const double unknown = 3.0 * static_cast<double>(problem_.points.size()) +
+                         static_cast<double>(system.gradient.size());
+  return system.weighted_chi2 / std::max(1.0, system.weight - unknown);
+}
+
+double CameraAdjustment::MedianResidual() const {
+  std::vector<double> residuals;
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem_.observations[i]) {
+      const CalibrationView& view = problem_.views[seen.view];
+      const double norm = ResidualOf(problem_, model_, view.velocity, seen,
+                                     view.cam_from_world * problem_.points[i])
+                              .norm();
+      residuals.push_back(norm / std::sqrt(seen.disparity > 0.0 ? 3.0 : 2.0));
+    }
+  }
+  return residuals.empty() ? 0.0 : Median(std::move(residuals));
+}
+
+double CameraAdjustment::MedianError() const {
+  std::vector<double> errors;
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem_.observations[i]) {
+      const CalibrationView& view = problem_.views[seen.view];
+      const Eigen::Vector3d in_camera = view.cam_from_world * problem_.points[i];
+      const double error =
+          (seen.sigma * ResidualOf(problem_, model_, view.velocity, seen, in_camera).head<2>())
+              .norm();
+      errors.push_back(error);
+    }
+  }
+  return errors.empty() ? 0.0 : Median(std::move(errors));
+}
+
+double MedianSpeed(const CalibrationProblem& problem, const CameraModel& model) {
+  constexpr double kStep = 1e-3;  // s
+  std::vector<double> speeds;
+  for (size_t i = 0; i < problem.points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem.observations[i]) {
+      const CalibrationView& view = problem.views[seen.view];
+      const Eigen::Vector3d in_camera = view.cam_from_world * problem.points[i];
+      if (in_camera.z() > 0.0) {
+        speeds.push_back((model.Project(in_camera, view.velocity, kStep) -
+                          model.Project(in_camera, view.velocity, -kStep))
+                             .norm() /
+                         (2.0 * kStep));
+      }
+    }
+  }
+  return speeds.empty() ? 0.0 : Median(std::move(speeds));
+}
+
+}  // namespace hullslam

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "calibration/camera_model.h"
+#include "hullslam/geometry/rigid3.h"
+
+namespace hullslam {
+
+// An image of a calibration.
+struct CalibrationView {
+  double timestamp = 0.0;  // s
+  Rigid3 cam_from_world;   // at the exposure of the middle
+  PointVelocity velocity;  // at this time
+  uint32_t recording = 0;  // those of one camera have worlds of their own
+};
+
+// A view of a point.
+struct CalibrationObservation {
+  uint32_t view = 0;
+  Eigen::Vector2d raw = Eigen::Vector2d::Zero();  // px
+  double sigma = 1.0;                             // of raw, px
+  double disparity = 0.0;                         // measured, bf / z, px; 0 if unknown
+};
+
+// The images and points from which a camera is calibrated. Without disparities the unit of length
+// is free.
+struct CalibrationProblem {
+  std::vector<CalibrationView> views;  // by recording and time
+  std::vector<Eigen::Vector3d> points;
+  std::vector<std::vector<CalibrationObservation>> observations;  // of each point
+  double disparity_sigma = 1.0;                                   // px
+  bool has_depth = false;
+
+  size_t CountObservations() const;
+  // Adds another recording of the same camera.
+  void Append(const CalibrationProblem& other);
+};
+
+// The median speed of the points in the images of a problem, px/s; 0 without velocities.
+double MedianSpeed(const CalibrationProblem& problem, const CameraModel& model);
+
+// The normal equations of all parameters of a calibration but the points, which are eliminated as
+// in optim/eliminated_points.h: six for each view (Retract), then those of the camera, in steps.
+struct ReducedSystem {
+  Eigen::MatrixXd hessian;  // lower half
+  Eigen::VectorXd gradient;
+  double weighted_chi2 = 0.0;  // the sum of the squared residuals, weighted by the loss
+  double weight = 0.0;         // the sum of the weights of all residuals
+};
+
+// Bundle adjustment in raw pixels: poses, points and the numbers of the camera. The residuals of an
+// observation are
+//   (CameraModel::Project(T x, velocity, exposure of the measured pixel) - raw) / sigma   and
+//   (bf / z + offset - disparity) / disparity_sigma,
+// with Cauchy's loss on their squared norm. The first view of each recording does not move. Without
+// depth the distance of the view that is farthest from it is kept.
+class CameraAdjustment {
+ public:
+  CameraAdjustment(CalibrationProblem problem, CameraModel model,
+                   std::vector<CameraParameter> parameters);
+
+  struct Options {
+    int max_iterations = 40;
+    double tolerance = 1e-7;  // relative change of the cost at which it ends
+  };
+  // Minimises the cost.
+  void Solve(const Options& options);
+
+  const CalibrationProblem& problem() const { return problem_; }
+  const CameraModel& model() const { return model_; }
+  std::span<const CameraParameter> parameters() const { return parameters_; }
+  double cost() const { return cost_; }
+  // The mean squared residual of the inliers: 1 if the sigmas are right.
+  double VarianceFactor() const;
+
+  // The inverse covariance of the camera's parameters in steps, with poses and points eliminated;
+  // for sigmas that are right.
+  Eigen::MatrixXd Information() const;
+  // The step of the camera's parameters to the minimum without the views that are marked, to first
+  // order. There is one mark per view.
+  Eigen::VectorXd StepWithout(const std::vector<uint8_t>& is_left_out) const;
+  // The median length of the raw reprojection errors, px.
+  double MedianError() const;
+
+ private:
+  struct PointSystem;
+  struct Reduction;
+
+  PointSystem SystemOf(size_t point, const Reduction& reduction, ReducedSystem& sum) const;
+  ReducedSystem Reduce(double damping, const std::vector<uint8_t>& is_left_out,
+                       std::vector<PointSystem>* points) const;
+  void FixFrame(const std::vector<uint8_t>& is_left_out, Eigen::MatrixXd& hessian) const;
+  Eigen::MatrixXd CameraInformation(const ReducedSystem& system, Eigen::VectorXd* gradient) const;
+  void Minimise(const Options& options);
+  // The median norm of the residuals of an observation, over the root of their number.
+  double MedianResidual() const;
+  double Cost(const CameraModel& model, std::span<const CalibrationView> views,
+              std::span<const Eigen::Vector3d> points) const;
+  Eigen::Index camera_row() const { return 6 * static_cast<Eigen::Index>(problem_.views.size()); }
+
+  CalibrationProblem problem_;
+  CameraModel model_;
+  std::vector<CameraParameter> parameters_;
+  double loss_scale_;  // sigmas
+  double cost_ = 0.0;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/camera_problem.h"
+
+namespace hullslam {
+
+// What a recording tells about one number of a camera.
+struct ParameterEvidence {
+  CameraParameter parameter;
+  double value = 0.0;
+  double sigma = 0.0;         // of the value, by the jackknife
+  double bundle_sigma = 0.0;  // of the value, if all errors were independent
+  // The other number whose error goes with that of this one most, and the correlation, -1 to 1.
+  std::string partner;
+  double correlation = 0.0;
+  double bound = 0.0;  // on sigma, up to which the number counts as determined
+  bool IsDetermined() const { return sigma <= bound; }
+};
+
+// What a recording tells about a camera.
+struct CameraEvidence {
+  std::vector<ParameterEvidence> parameters;
+  // The standard deviation of the position of a pixel near a corner of the image by the errors of
+  // all coefficients of the lens together, px. They go with one another, so none of them is known
+  // as well as this. Negative without coefficients.
+  double distortion_sigma = -1.0;
+  double distortion_bound = 1.0;  // px
+  bool IsDistortionDetermined() const;
+  // How much larger errors are than those of a bundle adjustment whose errors are independent.
+  double jackknife_factor = 1.0;
+
+  const ParameterEvidence* Find(const std::string& name) const;
+};
+
+// The adjustment must be at its minimum. The covariance of a bundle adjustment is too small,
+// because errors of neighbouring images go together. So each of ten pieces of the recording is left
+// out in turn: the jackknife's variance is 9 / 10 of the sum of the squared deviations of the ten
+// estimates (Efron 1982).
+// The bounds are multiplied by `slack`.
+CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment, double slack = 1.0);
+
+}  // namespace hullslam

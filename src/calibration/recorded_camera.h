@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/calibrate_camera.h"
+#include "hullslam/frame/image_input.h"
+#include "hullslam/system/options.h"
+#include "hullslam/util/cancellation.h"
+
+namespace hullslam {
+
+// A recording of the camera that is calibrated.
+struct CameraRecording {
+  size_t frames = 0;
+  // Reads the frame with this number for a camera. Throws InputError if it cannot be read; such
+  // frames are left out.
+  std::function<ImageInput(size_t frame, const PinholeCamera& camera)> load;
+};
+
+struct RecordedCalibrationOptions {
+  CalibrationChoice choice;
+  int max_passes = 4;
+  double slack = 1.0;                          // as in CalibrateCamera()
+  const Cancellation* cancellation = nullptr;  // may be null
+  // Called after each frame, with the number of the pass, that of the frame and that of all frames
+  // of the pass, from 1 on. May be empty.
+  std::function<void(int pass, size_t frame, size_t frames)> on_frame = {};
+};
+
+// The result of all passes. Also says why it is not good.
+struct RecordedCalibration {
+  CameraCalibrationResult result;  // of the last pass; `given` is the camera of the options
+  CalibrationProblem problem;      // of the last pass
+  int passes = 0;
+};
+
+// Calibrates the camera of `options` from recordings: runs SLAM on them, calibrates, and begins
+// again with the camera that was found, until it does not change any more, because a better camera
+// finds more landmarks. Throws InputError if no recording gives enough views, and for what
+// System::Track refuses.
+RecordedCalibration CalibrateFromRecordings(SystemOptions options,
+                                            std::span<const CameraRecording> recordings,
+                                            const RecordedCalibrationOptions& calibration);
+
+// The camera of `options` with the focal length that fits the first frames of a recording best. Of
+// the intrinsics only the size of the image is used. SLAM runs on these frames with fields of view
+// from 45 to 100 degrees and without distortion, and the focal length is calibrated from each. The
+// one with which most points are seen in most images wins. Throws InputError if SLAM fails with all
+// of them.
+PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recording,
+                          const RecordedCalibrationOptions& calibration);
+
+// Sets the camera of a run.
+void ApplyModel(const CameraModel& model, SystemOptions& options);
+
+}  // namespace hullslam

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/calibration_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "hullslam/util/error.h"
+#include "run/interrupt.h"
+#include "run/messages.h"
+#include "run/progress.h"
+#include "run/vocabularies.h"
+#include "settings/camera_file.h"
+#include "util/counted.h"
+
+namespace hullslam {
+namespace {
+
+// Opens the recordings. Of a video without settings, only the size of its images is used.
+std::vector<OpenedDataset> OpenAll(const CalibrationRun& run) {
+  std::vector<OpenedDataset> opened;
+  for (const std::filesystem::path& sequence : run.sequences) {
+    AnyDatasetArguments any = run.any;
+    const FoundDataset found = FindDataset(sequence, any.sensor, any.choices);
+    const bool has_field = std::ranges::any_of(found.dataset->options, [](const auto& option) {
+      return std::string_view(option.key) == "fov";
+    });
+    if (run.is_unknown && run.settings.empty() && has_field && !any.choices.contains("fov")) {
+      any.choices["fov"] = kAnyFieldOfView;
+    }
+    opened.push_back(OpenAnyDataset(any, {.path = sequence,
+                                          .settings = run.settings,
+                                          .overrides = run.overrides,
+                                          .selection = run.selection}));
+    const PinholeCamera& camera = opened.back().settings.options.camera;
+    const PinholeCamera& first = opened.front().settings.options.camera;
+    if (camera.width != first.width || camera.height != first.height) {
+      throw InputError(
+          fmt::format("{}: has images of {}x{} px, expected those of {}, {}x{} px: "
+                      "the recordings must be of one camera",
+                      sequence.string(), camera.width, camera.height,
+                      run.sequences.front().string(), first.width, first.height));
+    }
+  }
+  return opened;
+}
+
+std::string NumberWithUnit(const ParameterEvidence& one, double value) {
+  return one.parameter.unit == "s"    ? fmt::format("{:.2f} ms", 1e3 * value)
+         : one.parameter.unit.empty() ? fmt::format("{:.5f}", value)
+                                      : fmt::format("{:.2f} {}", value, one.parameter.unit);
+}
+
+}  // namespace
+
+CalibratedRun RunCalibration(const CalibrationRun& run) {
+  std::vector<OpenedDataset> opened = OpenAll(run);
+  SystemOptions options = opened.front().settings.options;
+  options.vocabulary = ChooseVocabulary(run.vocabulary, run.is_quiet);
+  std::vector<CameraRecording> recordings;
+  for (const OpenedDataset& one : opened) {
+    const ImageSequence& sequence = one.sequence;
+    const size_t frames = std::min(run.max_frames, sequence.frames.size());
+    recordings.push_back({frames, [&sequence](size_t frame, const auto& camera) {
+                            return sequence.load(sequence.frames[frame], camera);
+                          }});
+  }
+  std::unique_ptr<Progress> progress;
+  int shown_pass = -1;
+  RecordedCalibrationOptions calibration{
+      .choice = {}, .max_passes = run.max_passes, .cancellation = &Interruption()};
+  calibration.choice.disparity = options.sensor == SensorKind::kRgbd;
+  calibration.on_frame = [&](int pass, size_t frame, size_t frames) {
+    if (pass != shown_pass) {
+      if (progress) {
+        progress->Clear();
+      }
+      progress = std::make_unique<Progress>(frames, run.is_quiet);
+      shown_pass = pass;
+    }
+    progress->Show(frame, [pass] {
+      return pass == 0 ? std::string("looking for the focal length") : fmt::format("pass {}", pass);
+    });
+  };
+  if (run.is_unknown) {
+    constexpr double kSlack = 8.0;
+    calibration.slack = kSlack;
+    options.camera = GuessCamera(options, recordings.front(), calibration);
+    options.readout_time = 0.0;
+  }
+  CalibratedRun calibrated;
+  calibrated.calibration = CalibrateFromRecordings(options, recordings, calibration);
+  if (progress) {
+    progress->Clear();
+  }
+  calibrated.options = std::move(options);
+  ApplyModel(calibrated.calibration.result.model, calibrated.options);
+  for (const std::filesystem::path& sequence : run.sequences) {
+    calibrated.sequences.push_back(sequence.string());
+  }
+  calibrated.is_unknown = run.is_unknown;
+  return calibrated;
+}
+
+void PrintCalibration(const CalibratedRun& calibrated) {
+  const CameraCalibrationResult& result = calibrated.calibration.result;
+  const CalibrationProblem& problem = calibrated.calibration.problem;
+  Print("{} of {}, {} points, {} observations, {}\n", Counted(problem.views.size(), "image"),
+        Counted(calibrated.sequences.size(), "recording"), problem.points.size(),
+        problem.CountObservations(),
+        calibrated.calibration.passes == 1
+            ? "1 pass"
+            : fmt::format("{} passes", calibrated.calibration.passes));
+  Print("{:<17} {:>12} {:>12} {:>11}  {}\n", "", "before", "calibrated", "sigma", "");
+  std::set<std::string> advice;
+  const MotionSummary motion = SummarizeMotion(problem);
+  for (const ParameterEvidence& one : result.evidence.parameters) {
+    const std::string& name = one.parameter.name;
+    const bool is_calibrated = result.IsCalibrated(name);
+    Print("{:<17} {:>12} {:>12} {:>11}  {}\n", name,
+          NumberWithUnit(one, one.parameter.ValueIn(result.given)),
+          is_calibrated ? NumberWithUnit(one, one.parameter.ValueIn(result.model)) : "-",
+          NumberWithUnit(one, one.sigma),
+          is_calibrated ? (std::abs(one.correlation) > 0.9
+                               ? fmt::format("goes with {} ({:.2f})", one.partner, one.correlation)
+                               : "")
+          : one.parameter.kind == CameraParameter::Kind::kFocalLength && one.IsDetermined()
+              ? "kept: right within the scale of depth"
+              : "not determined, so it is kept");
+    if (!is_calibrated && !one.IsDetermined()) {
+      advice.insert(AdviceFor(one, motion));
+    }
+  }
+  if (result.evidence.distortion_sigma >= 0.0) {
+    Print("the lens as a whole: sigma {:.2f} px near a corner of the image\n",
+          result.evidence.distortion_sigma);
+  }
+  Print("median error {:.3f} -> {:.3f} px; sigmas are {:.1f} times those of a bundle adjustment\n",
+        result.median_error_before, result.median_error, result.evidence.jackknife_factor);
+  for (const std::string& one : advice) {
+    Print("to know more: {}\n", one);
+  }
+  if (!result.is_changed) {
+    Print("the camera agrees with the {}; nothing was changed\n",
+          calibrated.sequences.size() > 1 ? "recordings" : "recording");
+  }
+}
+
+std::vector<std::string> OriginOf(const CalibratedRun& calibrated) {
+  const CameraCalibrationResult& result = calibrated.calibration.result;
+  std::vector<std::string> lines = {"Calibrated by `hullslam calibrate` from"};
+  for (const std::string& sequence : calibrated.sequences) {
+    lines.push_back("  " + sequence);
+  }
+  for (const ParameterEvidence& one : result.evidence.parameters) {
+    lines.push_back(
+        result.IsCalibrated(one.parameter.name)
+            ? fmt::format("{}: sigma {}", one.parameter.name, NumberWithUnit(one, one.sigma))
+            : one.parameter.name + ": as it was given");
+  }
+  return lines;
+}
+
+std::vector<std::string> OverridesOf(const SystemOptions& options) {
+  std::vector<std::string> overrides;
+  for (const auto& [key, value] : CameraSettings(options.camera)) {
+    overrides.push_back(key + "=" + value);
+  }
+  overrides.push_back(fmt::format("Camera.readout_time={}", options.readout_time));
+  overrides.push_back(fmt::format("depth.disparity_offset={}", options.depth.disparity_offset));
+  return overrides;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "calibration/motion_advice.h"
+#include "calibration/recorded_camera.h"
+#include "run/dataset_arguments.h"
+
+namespace hullslam {
+
+// What is calibrated, and how.
+struct CalibrationRun {
+  std::vector<std::filesystem::path> sequences;  // of one camera
+  AnyDatasetArguments any = {};
+  std::filesystem::path settings = {};  // as in DatasetRequest
+  std::vector<std::string> overrides = {};
+  std::filesystem::path vocabulary = {};
+  FrameSelection selection = {};
+  bool is_unknown = false;  // only the size of the images is known of the camera
+  int max_passes = 4;
+  size_t max_frames = std::numeric_limits<size_t>::max();  // of each sequence
+  bool is_quiet = false;
+};
+
+// The choice of a field of view of a video whose camera is not known. Its value is not used.
+inline constexpr const char* kAnyFieldOfView = "65";
+
+struct CalibratedRun {
+  RecordedCalibration calibration;
+  SystemOptions options;  // with the calibrated camera
+  std::vector<std::string> sequences;
+  bool is_unknown = false;
+};
+
+// Runs SLAM on the sequences and calibrates their camera. Shows the progress. Throws InputError for
+// bad input, for cameras of different sizes, and if SLAM finds too little.
+CalibratedRun RunCalibration(const CalibrationRun& run);
+
+// Prints a table of the numbers of the camera, and which motion would determine the others.
+void PrintCalibration(const CalibratedRun& calibrated);
+
+// The lines that a camera file has as comments: where its numbers come from.
+std::vector<std::string> OriginOf(const CalibratedRun& calibrated);
+
+// key=value for --set, with all numbers of the camera.
+std::vector<std::string> OverridesOf(const SystemOptions& options);
+
+}  // namespace hullslam

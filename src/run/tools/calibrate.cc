@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "files/atomic_file.h"
+#include "run/calibration_run.h"
+#include "run/command_line.h"
+#include "run/dataset_arguments.h"
+#include "run/interrupt.h"
+#include "run/messages.h"
+#include "run/program.h"
+#include "run/tools/commands.h"
+#include "run/vocabularies.h"
+#include "settings/camera_file.h"
+
+namespace hullslam {
+namespace {
+
+struct CalibrateArguments {
+  CalibrationRun run;
+  std::filesystem::path output = "camera.yaml";
+  std::string format = "hullslam";
+};
+
+void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
+  CalibrationRun& run = arguments.run;
+  const DatasetHelp help = HelpOfAnyDataset();
+  app.add_option("SEQUENCE", run.sequences, help.sequence + "; several are of one camera")
+      ->required();
+  AddAnyDatasetOptions(app, run.any);
+  AddSettingsArgument(app, help.settings, run.settings);
+  AddOverrides(app, run.overrides);
+  AddVocabularyArgument(app, run.vocabulary);
+  app.add_flag("--from-nothing", run.is_unknown,
+               "only the size of the images is known: the focal length of the settings and the "
+               "lens are not used");
+  app.add_option("--output", arguments.output, "file that is written")
+      ->type_name("FILE")
+      ->capture_default_str();
+  app.add_option("--to", arguments.format, "format of the file")
+      ->check(CLI::IsMember(CameraFormatNames()))
+      ->capture_default_str();
+  app.add_option("--passes", run.max_passes,
+                 "number of runs at most; each has the camera that the one before found")
+      ->check(WholeNumber(1))
+      ->capture_default_str();
+  AddDebugFlag(app);
+  app.add_flag("--quiet", run.is_quiet, "do not show the progress");
+  AddVersionAndExitCodes(app, "done, also if nothing could be calibrated",
+                         "the program was interrupted");
+}
+
+}  // namespace
+
+int RunCalibrate(int argc, char** argv) {
+  CLI::App app(
+      "Calibrates a camera from recordings of anything, without a target: focal length, principal\n"
+      "point, lens, rolling shutter, and the disparities of depth images. Says what the recordings "
+      "do\nnot determine, and which motion would.",
+      argv[0]);
+  CalibrateArguments arguments;
+  AddArguments(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  ProbeFile(arguments.output);
+  CatchInterrupts();
+  const CalibratedRun calibrated = RunCalibration(arguments.run);
+  if (IsInterrupted()) {
+    PrintFailure("the program was interrupted; nothing was written");
+    return kFailed;
+  }
+  PrintCalibration(calibrated);
+  const auto names = CameraFormatNames();
+  const auto format =
+      static_cast<CameraFormat>(std::ranges::find(names, arguments.format) - names.begin());
+  const SystemOptions& options = calibrated.options;
+  const std::vector<NamedSetting> extra = {
+      {"Camera.readout_time", fmt::format("{}", options.readout_time)},
+      {"depth.disparity_offset", fmt::format("{}", options.depth.disparity_offset)}};
+  WriteFileAtomically(arguments.output,
+                      CameraFileText(format, options.camera, options.frames_per_second, extra,
+                                     OriginOf(calibrated)));
+  Print("{} has the camera\n", arguments.output.string());
+  return kDone;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hullslam/settings/settings.h"
+#include "support/plane_sequence.h"
+#include "support/rendered_desk.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+class Calibrate : public ::testing::Test {
+ protected:
+  ProgramResult Run(const std::string& sequence, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {sequence, "--quiet", "--output", output_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram("hullslam calibrate", arguments);
+  }
+
+  TemporaryFolder folder_;
+  std::string output_ = (std::filesystem::path(folder_.path()) / "camera.yaml").string();
+};
+
+TEST_F(Calibrate, KeepsAndSaysWhatAShortRecordingDoesNotDetermine) {
+  const RenderedDesk desk(60);
+  const ProgramResult result =
+      Run(desk.path(), {"--passes", "2", "--set", "Camera.fx=551", "--set", "Camera.fy=554.9"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("\nfx "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("not determined, so it is kept"), std::string::npos);
+  EXPECT_NE(result.output.find("to know more: "), std::string::npos) << result.output;
+  EXPECT_EQ(ReadSettings(output_).camera.fx, 551.0) << result.output;
+}
+
+TEST_F(Calibrate, RefusesWhatItCannotRead) {
+  const ProgramResult missing = Run("/no/such/sequence", {});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_TRUE(missing.errors.starts_with("error: ")) << missing.errors;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  const ProgramResult format = Run(folder_.path(), {"--to", "blender"});
+  EXPECT_EQ(format.exit_code, 2);
+  EXPECT_NE(format.errors.find("--to"), std::string::npos) << format.errors;
+}
+
+TEST_F(Calibrate, SaysThatARecordingIsTooShort) {
+  const PlaneSequence sequence(5);
+  const ProgramResult result = Run(sequence.path(), {});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("film for longer"), std::string::npos) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
+}  // namespace
+}  // namespace hullslam
