@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hullslam/settings/loaded_settings.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
@@ -34,6 +35,7 @@ struct Arguments {
   std::string suite;                // folder of a suite; empty for one sequence
   std::optional<std::string> only;  // names of sequences of the suite, separated by commas
   std::string scene = "desk";
+  std::string camera;  // a settings file; empty: the scene's
   std::optional<int> frames;
   SequenceOptions options;
   bool quiet = false;
@@ -87,6 +89,13 @@ void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments)
           ->type_name("DEGREES")
           ->excludes(&suite);
   hullslam::ExpectNumber(*fisheye->capture_default_str(), 0.0, kLargestFisheye);
+  app.add_option("--camera", arguments.camera,
+                 "render through the camera of this calibration (docs/settings.md), with its size, "
+                 "lens and readout time")
+      ->type_name("FILE")
+      ->excludes(&suite)
+      ->excludes(fisheye)
+      ->excludes(readout_time);
 }
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
@@ -163,6 +172,11 @@ int RenderOne(Arguments& arguments) {
   SequenceOptions& options = arguments.options;
   options.scene = hullslam::synthetic::ParseSceneKind(arguments.scene);
   options.frames = arguments.frames.value_or(hullslam::synthetic::DefaultFrames(options.scene));
+  if (!arguments.camera.empty()) {
+    const hullslam::SystemOptions settings = hullslam::LoadSettings(arguments.camera).options;
+    options.camera = settings.camera;
+    options.readout_time = settings.readout_time;
+  }
   Progress progress(options.frames, arguments.quiet);
   const int code = progress.End(hullslam::synthetic::WriteSequence(
       arguments.folder, options, [&](int done) { return progress.Show("", done); }));

@@ -8,16 +8,32 @@
 namespace hullslam {
 namespace {
 
-// The parameters that the recording determines.
+// The parameters that the recording determines. What belongs together is taken as a whole.
 std::vector<CameraParameter> Determined(const CameraEvidence& evidence) {
   std::vector<CameraParameter> determined;
   for (const ParameterEvidence& one : evidence.parameters) {
+    const bool is_known =
+        one.parameter.IsCoefficient() ? evidence.IsDistortionDetermined() : one.IsDetermined();
     if (one.parameter.IsNuisance() ||
-        (one.parameter.IsCoefficient() ? evidence.IsDistortionDetermined() : one.IsDetermined())) {
+        (is_known && (!one.parameter.IsCentring() || evidence.IsCentringDetermined()))) {
       determined.push_back(one.parameter);
     }
   }
   return determined;
+}
+
+// Whether the focal length that was found is the trusted one within the scale of depth.
+bool AgreesWithTrust(const CameraModel& found, const CalibrationProblem& problem,
+                     const CameraCalibrationOptions& options) {
+  const bool has_metre = problem.has_depth && !found.is_pair && options.trusted_focal_length > 0.0;
+  return has_metre && std::abs(std::log(found.camera.fx / options.trusted_focal_length)) <
+                          2.0 * kDepthScaleSigma;
+}
+
+CameraModel WithFocalLength(CameraModel model, double fx) {
+  model.camera.fy *= fx / model.camera.fx;
+  model.camera.fx = fx;
+  return model;
 }
 
 }  // namespace
@@ -27,67 +43,53 @@ bool CameraCalibrationResult::IsCalibrated(const std::string& name) const {
 }
 
 CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const CameraModel& given,
-                                        const CalibrationChoice& choice, double slack) {
+                                        const CameraCalibrationOptions& options) {
   CameraAdjustment fixed(problem, given, {});
   fixed.Solve({});
+  CameraModel start = given;
   std::vector<CameraParameter> parameters =
-      ParametersOf(given, choice, problem.has_depth, MedianSpeed(problem, given));
-  CameraAdjustment free(fixed.problem(), given, parameters);
+      ParametersOf(given, options.choice, problem.has_depth, MedianSpeed(problem, given));
+  CameraAdjustment free(fixed.problem(), start, parameters);
   free.Solve({});
+  CameraEvidence evidence = MeasureEvidence(free, options.slack);
   CameraCalibrationResult result{.given = given,
                                  .model = given,
-                                 .evidence = MeasureEvidence(free, slack),
+                                 .evidence = evidence,
                                  .calibrated = {},
                                  .median_error_before = fixed.MedianError()};
+  const auto hold_others = [&](std::vector<CameraParameter> kept) {
+    parameters = std::move(kept);
+    free = CameraAdjustment(fixed.problem(), start, parameters);
+    free.Solve({});
+    evidence = MeasureEvidence(free, options.slack);
+  };
+  if (AgreesWithTrust(free.model(), problem, options)) {
+    start = WithFocalLength(given, options.trusted_focal_length);
+    std::erase_if(parameters, &CameraParameter::IsFocalLength);
+    hold_others(parameters);
+  }
   // What is not determined is held, so that the rest may become determined or not. Two rounds
   // settle it.
-  CameraEvidence evidence = result.evidence;
   for (int round = 0; round < 2; ++round) {
     std::vector<CameraParameter> kept = Determined(evidence);
     if (kept.size() == parameters.size()) {
       break;
     }
-    parameters = std::move(kept);
-    free = CameraAdjustment(fixed.problem(), given, parameters);
-    free.Solve({});
-    if (parameters.empty()) {
-      break;
-    }
-    evidence = MeasureEvidence(free, slack);
-  }
-  // The metre of a depth camera is its depth's, and the size of a motion is depth over f. So a new
-  // f with the old scale of depth would change lengths, and f is kept where it is as right as the
-  // scale is known.
-  const double change = std::log(free.model().camera.fx / given.camera.fx);
-  const bool is_metric = problem.has_depth && !given.is_pair;
-  if (is_metric && slack == 1.0 && std::abs(change) < 2.0 * kDepthScaleSigma) {
-    const auto dropped = std::erase_if(parameters, [](const CameraParameter& parameter) {
-      return parameter.kind == CameraParameter::Kind::kFocalLength;
-    });
-    if (dropped > 0) {
-      free = CameraAdjustment(fixed.problem(), given, parameters);
-      free.Solve({});
-      evidence = MeasureEvidence(free, slack);
-    }
+    hold_others(std::move(kept));
   }
   result.median_error = free.MedianError();
-  std::erase_if(result.evidence.parameters,
-                [](const ParameterEvidence& one) { return one.parameter.IsNuisance(); });
   const double factor = evidence.jackknife_factor;
   result.evidence_ratio =
-      2.0 * (fixed.cost() - free.cost()) / (free.VarianceFactor() * factor * factor);
-  for (const CameraParameter& parameter : parameters) {
-    if (parameter.IsNuisance()) {
-      continue;
-    }
-    result.calibrated.push_back(parameter.name);
-    for (ParameterEvidence& one : result.evidence.parameters) {
-      if (const ParameterEvidence* const held = evidence.Find(one.parameter.name);
-          held != nullptr && one.parameter.name == parameter.name) {
-        one = *held;
-      }
+      2.0 * (fixed.cost() - free.cost()) / (evidence.variance_factor * factor * factor);
+  for (ParameterEvidence& one : result.evidence.parameters) {
+    if (const ParameterEvidence* const held = evidence.Find(one.parameter.name)) {
+      one = *held;
+      result.calibrated.push_back(one.parameter.name);
     }
   }
+  std::erase(result.calibrated, kDepthScaleName);
+  std::erase_if(result.evidence.parameters,
+                [](const ParameterEvidence& one) { return one.parameter.IsNuisance(); });
   // 4 sigmas for as many numbers: a right camera is practically never changed.
   const auto numbers = static_cast<double>(parameters.size());
   result.is_changed = result.evidence_ratio > numbers + 4.0 * std::sqrt(2.0 * numbers);

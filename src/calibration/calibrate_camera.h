@@ -28,13 +28,22 @@ struct CameraCalibrationResult {
   bool IsCalibrated(const std::string& name) const;
 };
 
+struct CameraCalibrationOptions {
+  CalibrationChoice choice = {};
+  // Factor on the bounds of what counts as determined. If nothing is known of the given camera,
+  // also an uncertain number is better.
+  double slack = 1.0;
+  // The focal length that the user gave, px; 0: none. That of a depth camera is kept if it is right
+  // within two standard deviations of the scale of depth (kDepthScaleSigma): the metre of such a
+  // camera is its depth's, and the size of a motion is depth over f, so a new f with the old scale
+  // of depth would change lengths.
+  double trusted_focal_length = 0.0;
+};
+
 // Calibrates the numbers of a camera that the problem determines, with all poses and points. The
 // others keep their values. The coefficients of the lens are taken together, because none of them
-// is known alone. The focal length of a depth camera is kept if it is right within two standard
-// deviations of the scale of depth (kDepthScaleSigma). The bounds of what counts as determined are
-// multiplied by `slack`: if nothing is known of the given camera, also an uncertain number is
-// better.
+// is known alone.
 CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const CameraModel& given,
-                                        const CalibrationChoice& choice, double slack = 1.0);
+                                        const CameraCalibrationOptions& options);
 
 }  // namespace hullslam

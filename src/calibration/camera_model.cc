@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "camera/wide_lens.h"
 
@@ -29,9 +29,8 @@ double StepOfCoefficient(const CameraModel& model, double PinholeCamera::*field)
 }  // namespace
 
 double CameraModel::ExposureOf(const Eigen::Vector2d& raw) const {
-  const double share = readout_direction == ReadoutDirection::kRows
-                           ? raw.y() / std::max(1, camera.height - 1)
-                           : raw.x() / std::max(1, camera.width - 1);
+  const double share = readout_direction == ReadoutDirection::kRows ? raw.y() / camera.height
+                                                                    : raw.x() / camera.width;
   return readout_time * (share - 0.5);
 }
 
@@ -99,41 +98,24 @@ std::vector<CameraParameter> ParametersOf(const CameraModel& model, const Calibr
                           .unit = "px",
                           .step = camera.fx / half_diagonal});
   }
-  const auto add = [&](const char* name, double PinholeCamera::*field, const char* unit,
+  const auto add = [&](std::string_view name, double PinholeCamera::*field, const char* unit,
                        double step) {
-    parameters.push_back(
-        {.kind = Kind::kField, .field = field, .name = name, .unit = unit, .step = step});
+    parameters.push_back({.kind = Kind::kField,
+                          .field = field,
+                          .name = std::string(name),
+                          .unit = unit,
+                          .step = step});
   };
   if (choice.principal_point) {
     add("cx", &PinholeCamera::cx, "px", 1.0);
     add("cy", &PinholeCamera::cy, "px", 1.0);
   }
   if (choice.distortion) {
-    const auto add_coefficient = [&](std::string_view name, double PinholeCamera::*field) {
-      add(std::string(name).c_str(), field, "", StepOfCoefficient(model, field));
-    };
-    if (const WideModel* const wide = FindWideModel(camera.lens)) {
-      for (const WideModel::Coefficient& one : wide->coefficients) {
-        add_coefficient(one.name, one.field);
-      }
-    } else {
-      struct Coefficient {
-        const char* name;
-        double PinholeCamera::*field;
-        bool is_always;
-      };
-      constexpr std::array<Coefficient, 8> kBrown = {{{"k1", &PinholeCamera::k1, true},
-                                                      {"k2", &PinholeCamera::k2, true},
-                                                      {"p1", &PinholeCamera::p1, true},
-                                                      {"p2", &PinholeCamera::p2, true},
-                                                      {"k3", &PinholeCamera::k3, false},
-                                                      {"k4", &PinholeCamera::k4, false},
-                                                      {"k5", &PinholeCamera::k5, false},
-                                                      {"k6", &PinholeCamera::k6, false}}};
-      for (const Coefficient& one : kBrown) {
-        if (one.is_always || camera.*one.field != 0.0) {
-          add_coefficient(one.name, one.field);
-        }
+    for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
+      const bool is_basic =
+          one.name == "k1" || one.name == "k2" || one.name == "p1" || one.name == "p2";
+      if (is_basic || FindWideModel(camera.lens) != nullptr || camera.*one.field != 0.0) {
+        add(one.name, one.field, "", StepOfCoefficient(model, one.field));
       }
     }
   }
@@ -155,7 +137,7 @@ std::vector<CameraParameter> ParametersOf(const CameraModel& model, const Calibr
   if (has_depth && !model.is_pair) {
     parameters.push_back({.kind = Kind::kDepthScale,
                           .field = nullptr,
-                          .name = "depth_scale",
+                          .name = kDepthScaleName,
                           .unit = "",
                           .step = kDepthScaleSigma});
   }

@@ -45,6 +45,8 @@ Eigen::Vector3d MovedPoint(const Eigen::Vector3d& point, const PointVelocity& ve
 // by about this much from camera to camera.
 inline constexpr double kDepthScaleSigma = 0.01;
 
+inline constexpr const char* kDepthScaleName = "depth_scale";
+
 // One number of a CameraModel.
 struct CameraParameter {
   enum class Kind { kFocalLength, kField, kReadout, kDisparityOffset, kDepthScale };
@@ -56,8 +58,15 @@ struct CameraParameter {
   // mathematics uses multiples of it.
   double step = 1.0;
 
+  bool IsFocalLength() const { return kind == Kind::kFocalLength; }
   // Whether the number is only there because it is not known exactly (CameraModel::depth_scale).
   bool IsNuisance() const { return kind == Kind::kDepthScale; }
+  // Whether it says where the axis of the lens is: the principal point and Brown's tangential
+  // distortion, which replace one another where the camera hardly turns.
+  bool IsCentring() const {
+    return field == &PinholeCamera::cx || field == &PinholeCamera::cy ||
+           field == &PinholeCamera::p1 || field == &PinholeCamera::p2;
+  }
   bool IsCoefficient() const { return kind == Kind::kField && unit.empty(); }  // of the lens
   double ValueIn(const CameraModel& model) const;
   // Changes the number by so many steps.

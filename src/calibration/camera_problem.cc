@@ -9,82 +9,14 @@
 #include <optional>
 #include <utility>
 
-#include "camera/point_measurement.h"
 #include "optim/robust.h"
 #include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-using ByCamera = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kDifference = 1e-2;  // steps of a parameter, for numerical derivatives
-constexpr double kFixed = 1e9;        // weight of what does not move, relative to the largest
-
-// (raw error, disparity error) in sigmas. Infinite for a point that is not in front of the camera.
-Eigen::Vector3d ResidualOf(const CalibrationProblem& problem, const CameraModel& model,
-                           const PointVelocity& velocity, const CalibrationObservation& seen,
-                           const Eigen::Vector3d& in_camera) {
-  const Eigen::Vector3d moved = MovedPoint(in_camera, velocity, model.ExposureOf(seen.raw));
-  if (moved.z() < kMinDepth) {
-    return Eigen::Vector3d::Constant(kInfinite);
-  }
-  Eigen::Vector3d residual;
-  residual.head<2>() = (model.camera.Distort(model.camera.Project(moved)) - seen.raw) / seen.sigma;
-  residual.z() = seen.disparity > 0.0 ? (model.camera.bf / (model.depth_scale * moved.z()) +
-                                         model.disparity_offset - seen.disparity) /
-                                            problem.disparity_sigma
-                                      : 0.0;
-  return residual;
-}
-
-// The derivative of ResidualOf by the point in the camera frame.
-Eigen::Matrix3d ByPoint(const CalibrationProblem& problem, const CameraModel& model,
-                        const PointVelocity& velocity, const CalibrationObservation& seen,
-                        const Eigen::Vector3d& in_camera) {
-  const double seconds = model.ExposureOf(seen.raw);
-  const Eigen::Vector3d moved = MovedPoint(in_camera, velocity, seconds);
-  const Eigen::Matrix3d turn = Skew(velocity.angular);
-  const Eigen::Matrix3d moved_by_point =
-      Eigen::Matrix3d::Identity() + seconds * turn + 0.5 * seconds * seconds * turn * turn;
-  const Eigen::Matrix3d projected = ProjectRgbdJacobian(model.camera, moved);
-  Eigen::Matrix3d derivative;
-  derivative.topRows<2>() = model.camera.DistortionJacobian(model.camera.Project(moved)) *
-                            projected.topRows<2>() / seen.sigma;
-  derivative.row(2) =
-      seen.disparity > 0.0
-          ? Eigen::RowVector3d(projected.row(2) / (model.depth_scale * problem.disparity_sigma))
-          : Eigen::RowVector3d::Zero();
-  return derivative * moved_by_point;
-}
-
-// The models to both sides of one, parameter by parameter.
-struct Neighbours {
-  std::vector<CameraModel> below;
-  std::vector<CameraModel> above;
-
-  Neighbours(const CameraModel& model, std::span<const CameraParameter> parameters) {
-    for (const CameraParameter& parameter : parameters) {
-      parameter.Move(-kDifference, below.emplace_back(model));
-      parameter.Move(kDifference, above.emplace_back(model));
-    }
-  }
-};
-
-ByCamera DerivativeByCamera(const CalibrationProblem& problem, const Neighbours& models,
-                            const PointVelocity& velocity, const CalibrationObservation& seen,
-                            const Eigen::Vector3d& in_camera) {
-  ByCamera derivative(3, static_cast<Eigen::Index>(models.above.size()));
-  for (size_t i = 0; i < models.above.size(); ++i) {
-    const auto residual = [&](const CameraModel& model) {
-      return ResidualOf(problem, model, velocity, seen, in_camera);
-    };
-    derivative.col(static_cast<Eigen::Index>(i)) =
-        (residual(models.above[i]) - residual(models.below[i])) / (2.0 * kDifference);
-  }
-  return derivative;
-}
+constexpr double kFixed = 1e9;  // weight of what does not move, relative to the largest
 
 }  // namespace
 
@@ -104,7 +36,7 @@ struct CameraAdjustment::PointSystem {
 // What is the same for all points of a system.
 struct CameraAdjustment::Reduction {
   const std::vector<uint8_t>& is_left_out;
-  Neighbours models;
+  ByCameraParameters by_camera;
 };
 
 size_t CalibrationProblem::CountObservations() const {
@@ -136,6 +68,7 @@ void CalibrationProblem::Append(const CalibrationProblem& other) {
 CameraAdjustment::CameraAdjustment(CalibrationProblem problem, CameraModel model,
                                    std::vector<CameraParameter> parameters)
     : problem_(std::move(problem)),
+      residual_{.disparity_sigma = problem_.disparity_sigma},
       model_(model),
       parameters_(std::move(parameters)),
       loss_scale_(kCauchyScale) {
@@ -150,8 +83,7 @@ double CameraAdjustment::Cost(const CameraModel& model, std::span<const Calibrat
     for (const CalibrationObservation& seen : problem_.observations[i]) {
       const CalibrationView& view = views[seen.view];
       const double chi2 =
-          ResidualOf(problem_, model, view.velocity, seen, view.cam_from_world * points[i])
-              .squaredNorm();
+          residual_.At(model, view.velocity, seen, view.cam_from_world * points[i]).squaredNorm();
       cost += 0.5 * CauchyCost(chi2, loss_scale_);
     }
   }
@@ -170,7 +102,7 @@ CameraAdjustment::PointSystem CameraAdjustment::SystemOf(size_t point, const Red
     }
     const CalibrationView& view = problem_.views[seen.view];
     const Eigen::Vector3d in_camera = view.cam_from_world * problem_.points[point];
-    const Eigen::Vector3d residual = ResidualOf(problem_, model_, view.velocity, seen, in_camera);
+    const Eigen::Vector3d residual = residual_.At(model_, view.velocity, seen, in_camera);
     const double chi2 = residual.squaredNorm();
     if (!std::isfinite(chi2)) {
       continue;
@@ -180,13 +112,13 @@ CameraAdjustment::PointSystem CameraAdjustment::SystemOf(size_t point, const Red
     sum.weighted_chi2 += weight * chi2;
     sum.weight += weight * static_cast<double>(rows);
     const Eigen::Matrix3d by_camera_point =
-        ByPoint(problem_, model_, view.velocity, seen, in_camera);
+        residual_.ByPoint(model_, view.velocity, seen, in_camera);
     Eigen::Matrix<double, 3, 6> by_pose;
     by_pose << -by_camera_point * Skew(in_camera), by_camera_point;
     const Eigen::Matrix3d by_point =
         by_camera_point * view.cam_from_world.rotation.toRotationMatrix();
-    const ByCamera by_camera =
-        DerivativeByCamera(problem_, reduction.models, view.velocity, seen, in_camera);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> by_camera =
+        reduction.by_camera.Of(residual_, view.velocity, seen, in_camera);
     const Eigen::Index row = 6 * static_cast<Eigen::Index>(seen.view);
     system.hessian.noalias() += weight * by_point.transpose() * by_point;
     system.gradient.noalias() += weight * by_point.transpose() * residual;
@@ -207,7 +139,7 @@ ReducedSystem CameraAdjustment::Reduce(double damping, const std::vector<uint8_t
                                        std::vector<PointSystem>* points) const {
   const Eigen::Index camera = camera_row();
   const auto numbers = static_cast<Eigen::Index>(parameters_.size());
-  const Reduction reduction{is_left_out, Neighbours(model_, parameters_)};
+  const Reduction reduction{is_left_out, ByCameraParameters(model_, parameters_)};
   ReducedSystem sum;
   sum.hessian.setZero(camera + numbers, camera + numbers);
   sum.gradient.setZero(camera + numbers);
@@ -286,12 +218,28 @@ void CameraAdjustment::FixFrame(const std::vector<uint8_t>& is_left_out,
   }
 }
 
+template <typename Measure>
+double CameraAdjustment::MedianOf(const Measure& measure) const {
+  std::vector<double> values;
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem_.observations[i]) {
+      const CalibrationView& view = problem_.views[seen.view];
+      values.push_back(measure(seen, residual_.At(model_, view.velocity, seen,
+                                                  view.cam_from_world * problem_.points[i])));
+    }
+  }
+  return values.empty() ? 0.0 : Median(std::move(values));
+}
+
 // With a wrong camera most errors are beyond the scale of the loss, and would hardly pull. So it
 // begins with a scale that most errors are within.
 void CameraAdjustment::Solve(const Options& options) {
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
-    const double excess = std::max(1.0, MedianResidual());
+    const double excess =
+        std::max(1.0, MedianOf([](const CalibrationObservation& seen, const auto& residual) {
+                   return residual.norm() / std::sqrt(seen.disparity > 0.0 ? 3.0 : 2.0);
+                 }));
     loss_scale_ = kCauchyScale * excess;
     cost_ = Cost(model_, problem_.views, problem_.points);
     Minimise(options);
@@ -372,9 +320,12 @@ Eigen::MatrixXd CameraAdjustment::CameraInformation(const ReducedSystem& system,
   return information;
 }
 
-Eigen::MatrixXd CameraAdjustment::Information() const {
+CameraAdjustment::Minimum CameraAdjustment::AtMinimum() const {
   const ReducedSystem system = Reduce(0.0, std::vector<uint8_t>(problem_.views.size(), 0), nullptr);
-  return CameraInformation(system, nullptr);
+  const double unknown = 3.0 * static_cast<double>(problem_.points.size()) +
+                         static_cast<double>(system.gradient.size());
+  return {.information = CameraInformation(system, nullptr),
+          .variance_factor = system.weighted_chi2 / std::max(1.0, system.weight - unknown)};
 }
 
 Eigen::VectorXd CameraAdjustment::StepWithout(const std::vector<uint8_t>& is_left_out) const {
@@ -384,40 +335,10 @@ Eigen::VectorXd CameraAdjustment::StepWithout(const std::vector<uint8_t>& is_lef
   return -information.ldlt().solve(gradient);
 }
 
-double CameraAdjustment::VarianceFactor() const {
-  const ReducedSystem system = Reduce(0.0, std::vector<uint8_t>(problem_.views.size(), 0), nullptr);
-  const double unknown = 3.0 * static_cast<double>(problem_.points.size()) +
-                         static_cast<double>(system.gradient.size());
-  return system.weighted_chi2 / std::max(1.0, system.weight - unknown);
-}
-
-double CameraAdjustment::MedianResidual() const {
-  std::vector<double> residuals;
-  for (size_t i = 0; i < problem_.points.size(); ++i) {
-    for (const CalibrationObservation& seen : problem_.observations[i]) {
-      const CalibrationView& view = problem_.views[seen.view];
-      const double norm = ResidualOf(problem_, model_, view.velocity, seen,
-                                     view.cam_from_world * problem_.points[i])
-                              .norm();
-      residuals.push_back(norm / std::sqrt(seen.disparity > 0.0 ? 3.0 : 2.0));
-    }
-  }
-  return residuals.empty() ? 0.0 : Median(std::move(residuals));
-}
-
 double CameraAdjustment::MedianError() const {
-  std::vector<double> errors;
-  for (size_t i = 0; i < problem_.points.size(); ++i) {
-    for (const CalibrationObservation& seen : problem_.observations[i]) {
-      const CalibrationView& view = problem_.views[seen.view];
-      const Eigen::Vector3d in_camera = view.cam_from_world * problem_.points[i];
-      const double error =
-          (seen.sigma * ResidualOf(problem_, model_, view.velocity, seen, in_camera).head<2>())
-              .norm();
-      errors.push_back(error);
-    }
-  }
-  return errors.empty() ? 0.0 : Median(std::move(errors));
+  return MedianOf([](const CalibrationObservation& seen, const Eigen::Vector3d& residual) {
+    return seen.sigma * residual.head<2>().norm();
+  });
 }
 
 double MedianSpeed(const CalibrationProblem& problem, const CameraModel& model) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/camera_model.h"
+#include "calibration/raw_residual.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
@@ -18,14 +19,6 @@ struct CalibrationView {
   Rigid3 cam_from_world;   // at the exposure of the middle
   PointVelocity velocity;  // at this time
   uint32_t recording = 0;  // those of one camera have worlds of their own
-};
-
-// A view of a point.
-struct CalibrationObservation {
-  uint32_t view = 0;
-  Eigen::Vector2d raw = Eigen::Vector2d::Zero();  // px
-  double sigma = 1.0;                             // of raw, px
-  double disparity = 0.0;                         // measured, bf / z, px; 0 if unknown
 };
 
 // The images and points from which a camera is calibrated. Without disparities the unit of length
@@ -54,12 +47,9 @@ struct ReducedSystem {
   double weight = 0.0;         // the sum of the weights of all residuals
 };
 
-// Bundle adjustment in raw pixels: poses, points and the numbers of the camera. The residuals of an
-// observation are
-//   (CameraModel::Project(T x, velocity, exposure of the measured pixel) - raw) / sigma   and
-//   (bf / z + offset - disparity) / disparity_sigma,
-// with Cauchy's loss on their squared norm. The first view of each recording does not move. Without
-// depth the distance of the view that is farthest from it is kept.
+// Bundle adjustment in raw pixels: poses, points and the numbers of the camera. The residuals are
+// those of raw_residual.h, with Cauchy's loss on their squared norm. The first view of each
+// recording does not move. Without depth the distance of the view that is farthest from it is kept.
 class CameraAdjustment {
  public:
   CameraAdjustment(CalibrationProblem problem, CameraModel model,
@@ -76,12 +66,14 @@ class CameraAdjustment {
   const CameraModel& model() const { return model_; }
   std::span<const CameraParameter> parameters() const { return parameters_; }
   double cost() const { return cost_; }
-  // The mean squared residual of the inliers: 1 if the sigmas are right.
-  double VarianceFactor() const;
-
-  // The inverse covariance of the camera's parameters in steps, with poses and points eliminated;
-  // for sigmas that are right.
-  Eigen::MatrixXd Information() const;
+  // What the residuals tell about the camera at the minimum.
+  struct Minimum {
+    // The inverse covariance of the camera's parameters in steps, with poses and points eliminated;
+    // for sigmas that are right.
+    Eigen::MatrixXd information;
+    double variance_factor = 1.0;  // mean squared residual of the inliers: 1 if sigmas are right
+  };
+  Minimum AtMinimum() const;
   // The step of the camera's parameters to the minimum without the views that are marked, to first
   // order. There is one mark per view.
   Eigen::VectorXd StepWithout(const std::vector<uint8_t>& is_left_out) const;
@@ -98,13 +90,15 @@ class CameraAdjustment {
   void FixFrame(const std::vector<uint8_t>& is_left_out, Eigen::MatrixXd& hessian) const;
   Eigen::MatrixXd CameraInformation(const ReducedSystem& system, Eigen::VectorXd* gradient) const;
   void Minimise(const Options& options);
-  // The median norm of the residuals of an observation, over the root of their number.
-  double MedianResidual() const;
+  // The median of a number that is computed from each observation and its residual.
+  template <typename Measure>
+  double MedianOf(const Measure& measure) const;
   double Cost(const CameraModel& model, std::span<const CalibrationView> views,
               std::span<const Eigen::Vector3d> points) const;
   Eigen::Index camera_row() const { return 6 * static_cast<Eigen::Index>(problem_.views.size()); }
 
   CalibrationProblem problem_;
+  RawResidual residual_;
   CameraModel model_;
   std::vector<CameraParameter> parameters_;
   double loss_scale_;  // sigmas

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/determined.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -15,8 +14,9 @@ namespace {
 using Kind = CameraParameter::Kind;
 
 constexpr size_t kPieces = 10;
-constexpr double kFocalBound = 0.005;     // share of f
-constexpr double kCentreBound = 2.0;      // px
+constexpr double kFocalBound = 0.005;  // share of f
+// px. Targets tell the principal point about as well as this, so a worse one is no better.
+constexpr double kCentreBound = 0.75;
 constexpr double kDistortionBound = 1.0;  // px, near a corner
 constexpr double kReadoutBound = 1.5e-3;  // s
 constexpr double kDisparityBound = 0.1;   // px
@@ -84,6 +84,12 @@ bool CameraEvidence::IsDistortionDetermined() const {
   return distortion_sigma >= 0.0 && distortion_sigma <= distortion_bound;
 }
 
+bool CameraEvidence::IsCentringDetermined() const {
+  return std::ranges::all_of(parameters, [](const ParameterEvidence& one) {
+    return !one.parameter.IsCentring() || one.parameter.IsCoefficient() || one.IsDetermined();
+  });
+}
+
 const ParameterEvidence* CameraEvidence::Find(const std::string& name) const {
   const auto it = std::ranges::find_if(
       parameters, [&](const ParameterEvidence& one) { return one.parameter.name == name; });
@@ -95,7 +101,12 @@ CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment, double slack)
   evidence.distortion_bound = slack * kDistortionBound;
   const auto parameters = adjustment.parameters();
   const auto size = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::MatrixXd information = adjustment.Information() / adjustment.VarianceFactor();
+  if (parameters.empty()) {
+    return evidence;
+  }
+  const CameraAdjustment::Minimum minimum = adjustment.AtMinimum();
+  evidence.variance_factor = minimum.variance_factor;
+  const Eigen::MatrixXd information = minimum.information / minimum.variance_factor;
   // Directions of which nothing is known have a very large sigma, but not an infinite one.
   constexpr double kNothing = 1e-6;
   const Eigen::MatrixXd covariance =

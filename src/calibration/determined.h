@@ -30,8 +30,10 @@ struct CameraEvidence {
   double distortion_sigma = -1.0;
   double distortion_bound = 1.0;  // px
   bool IsDistortionDetermined() const;
+  bool IsCentringDetermined() const;  // both numbers of the principal point
   // How much larger errors are than those of a bundle adjustment whose errors are independent.
   double jackknife_factor = 1.0;
+  double variance_factor = 1.0;  // CameraAdjustment::Minimum
 
   const ParameterEvidence* Find(const std::string& name) const;
 };

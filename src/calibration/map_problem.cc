@@ -2,7 +2,14 @@
 #include "calibration/map_problem.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "frame/rolling_shutter.h"
 
 namespace hullslam {
 namespace {
@@ -34,35 +41,25 @@ struct ChosenViews {
   std::unordered_map<uint32_t, uint32_t> number_of_keyframe;
 };
 
-IslandId LargestIsland(const Map& map) {
-  std::unordered_map<uint32_t, size_t> sizes;
-  IslandId largest{0};
-  size_t most = 0;
-  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
-    if (const size_t size = ++sizes[keyframe.island.value]; size > most) {
-      most = size;
-      largest = keyframe.island;
-    }
-  });
-  return largest;
-}
-
+// The keyframes with a velocity; all of them, without velocities, if those are few.
 ChosenViews ChooseViews(const Map& map, const Trajectory& trajectory) {
   struct Candidate {
     KeyframeId id;
     CalibrationView view;
   };
-  const IslandId island = LargestIsland(map);
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> all;
+  std::vector<Candidate> moving;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    if (!(keyframe.island == island)) {
-      return;
-    }
     const double timestamp = keyframe.frame->timestamp;
+    const Candidate still{
+        id, {.timestamp = timestamp, .cam_from_world = keyframe.cam_from_world, .velocity = {}}};
+    all.push_back(still);
     if (const auto velocity = VelocityAt(trajectory, timestamp)) {
-      candidates.push_back({id, {timestamp, keyframe.cam_from_world, *velocity}});
+      moving.push_back(still);
+      moving.back().view.velocity = *velocity;
     }
   });
+  std::vector<Candidate>& candidates = 2 * moving.size() >= all.size() ? moving : all;
   std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.view.timestamp; });
   ChosenViews chosen;
   const size_t count = std::min(kMostViews, candidates.size());
@@ -74,42 +71,27 @@ ChosenViews ChooseViews(const Map& map, const Trajectory& trajectory) {
   return chosen;
 }
 
+// The raw pixel of a keypoint, before its shutter was corrected.
+Eigen::Vector2d RawPixelOf(const Sensor& sensor, const Frame& frame, size_t keypoint) {
+  Eigen::Vector2d pixel = frame.features.keypoints[keypoint].undistorted.cast<double>();
+  if (frame.shutter != nullptr) {
+    pixel = BeforeCorrection(sensor, *frame.shutter, pixel, keypoint);
+  }
+  return sensor.camera.Distort(pixel);
+}
+
 }  // namespace
 
-void RawKeypoints::Note(const FrameReport& report) {
-  const Frame& frame = *report.frame;
-  if (frame.shutter == nullptr) {
-    return;
-  }
-  auto& raw = of_frame_[frame.id.value];
-  for (size_t i = 0; i < frame.features.size(); ++i) {
-    const Eigen::Vector2f& corrected = frame.features.keypoints[i].undistorted;
-    const Eigen::Vector2d read =
-        BeforeCorrection(sensor_, *frame.shutter, corrected.cast<double>(), i);
-    raw.emplace(Key(corrected.x(), corrected.y()), sensor_.camera.Distort(read).cast<float>());
-  }
-}
-
-Eigen::Vector2d RawKeypoints::RawOf(const Frame& frame, size_t keypoint) const {
-  const Eigen::Vector2f& pixel = frame.features.keypoints[keypoint].undistorted;
-  if (const auto of_frame = of_frame_.find(frame.id.value); of_frame != of_frame_.end()) {
-    const auto it = of_frame->second.find(Key(pixel.x(), pixel.y()));
-    if (it != of_frame->second.end()) {
-      return it->second.cast<double>();
-    }
-  }
-  return sensor_.camera.Distort(pixel.cast<double>());
-}
-
-CameraModel ModelOf(const Sensor& sensor) {
+CameraModel ModelOf(const Sensor& sensor, double disparity_offset) {
   return {.camera = sensor.camera,
           .readout_time = sensor.readout_time,
           .readout_direction = sensor.readout_direction,
+          .disparity_offset = disparity_offset,
           .is_pair = sensor.IsStereo()};
 }
 
-CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const Trajectory& trajectory,
-                               const RawKeypoints& raw) {
+CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const CameraModel& model,
+                               const Trajectory& trajectory) {
   ChosenViews chosen = ChooseViews(map, trajectory);
   CalibrationProblem problem;
   problem.has_depth = !sensor.IsMonocular();
@@ -134,10 +116,10 @@ CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const Traje
       const auto level = static_cast<size_t>(features.keypoints[observation.keypoint].level);
       track.seen.push_back(
           {.view = number->second,
-           .raw = raw.RawOf(frame, observation.keypoint),
+           .raw = RawPixelOf(sensor, frame, observation.keypoint),
            .sigma =
                sensor.depth_error.pixel_sigma * static_cast<double>(sensor.levels.scale[level]),
-           .disparity = depth > 0.0 && problem.has_depth ? sensor.camera.bf / depth : 0.0});
+           .disparity = depth > 0.0 ? sensor.camera.bf / depth + model.disparity_offset : 0.0});
     }
     if (track.seen.size() >= fewest) {
       tracks.push_back(std::move(track));

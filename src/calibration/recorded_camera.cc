@@ -21,31 +21,27 @@ namespace {
 constexpr size_t kFewestViews = 8;
 constexpr size_t kFewestObservations = 500;
 
-// The settings of a run that is made for its keyframes: nothing is forgotten, and objects, which
-// say nothing about the camera, are left out.
+// Objects say nothing about the camera. Without them frames keep what undoes the correction of
+// their shutter.
 SystemOptions OptionsOfRun(SystemOptions options) {
   options.objects.enabled = false;
   return options;
 }
 
-bool IsCancelled(const RecordedCalibrationOptions& calibration) {
-  return IsRequested(calibration.cancellation);
-}
-
-// SLAM on the first `frames` frames of a recording. Empty if there is no map.
+// SLAM on the first `frames` frames of a recording. Empty if there is no map. Throws the error of
+// the first image if no image can be read.
 CalibrationProblem ProblemOf(const SystemOptions& options, const CameraRecording& recording,
                              size_t frames, const RecordedCalibrationOptions& calibration,
                              const std::function<void()>& on_frame) {
   const Sensor sensor = MakeSensor(options);
-  RawKeypoints raw(sensor);
   System system(options, PipelineKind::kSequential);
-  system.SetFrameCallback([&](const FrameReport& report) { raw.Note(report); });
-  for (size_t i = 0; i < frames && !IsCancelled(calibration); ++i) {
+  std::optional<InputError> failure;
+  for (size_t i = 0; i < frames && !IsRequested(calibration.cancellation); ++i) {
     std::optional<ImageInput> image;
     try {
       image = recording.load(i, options.camera);
-    } catch (const InputError&) {
-      // The frame is left out, as in a run.
+    } catch (const InputError& error) {
+      failure = failure ? failure : error;  // the frame is left out, as in a run
     }
     if (image) {
       image->masks.clear();
@@ -54,10 +50,14 @@ CalibrationProblem ProblemOf(const SystemOptions& options, const CameraRecording
     }
     on_frame();
   }
+  if (failure && system.frames().empty()) {
+    throw *failure;
+  }
   system.Finish(calibration.cancellation);
   const auto map = system.map();
+  const CameraModel model = ModelOf(sensor, options.depth.disparity_offset);
   return map == nullptr ? CalibrationProblem()
-                        : MakeProblem(*map, sensor, system.trajectory(), raw);
+                        : MakeProblem(*map, sensor, model, system.trajectory());
 }
 
 bool IsEnough(const CalibrationProblem& problem) {
@@ -97,8 +97,7 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
                                             const RecordedCalibrationOptions& calibration) {
   constexpr double kSettled = 0.2;  // px
   options = OptionsOfRun(std::move(options));
-  CameraModel model = ModelOf(MakeSensor(options));
-  model.disparity_offset = options.depth.disparity_offset;
+  CameraModel model = ModelOf(MakeSensor(options), options.depth.disparity_offset);
   const CameraModel given = model;
   size_t frames = 0;
   for (const CameraRecording& recording : recordings) {
@@ -122,19 +121,33 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
           "least {} and {}: film for longer, and move the camera",
           problem.views.size(), problem.CountObservations(), kFewestViews, kFewestObservations));
     }
-    calibrated.result = CalibrateCamera(problem, model, calibration.choice, calibration.slack);
+    calibrated.result = CalibrateCamera(problem, model, calibration.camera);
     calibrated.problem = std::move(problem);
     calibrated.passes = pass;
     const double change =
         ChangeOf(model, calibrated.result.model, ParametersIn(calibrated.result.evidence));
     model = calibrated.result.model;
-    if (IsCancelled(calibration) || change < kSettled) {
+    if (IsRequested(calibration.cancellation) || change < kSettled) {
       break;
     }
   }
-  calibrated.result.given = given;
-  calibrated.result.is_changed =
-      ChangeOf(given, model, ParametersIn(calibrated.result.evidence)) > 0.0;
+  // Also what an earlier pass has changed is calibrated.
+  CameraCalibrationResult& result = calibrated.result;
+  result.given = given;
+  if (calibrated.passes > 1) {
+    CameraAdjustment fixed(calibrated.problem, given, {});
+    fixed.Solve({});
+    result.median_error_before = fixed.MedianError();
+  }
+  result.is_changed = false;
+  for (const ParameterEvidence& one : result.evidence.parameters) {
+    if (one.parameter.ValueIn(given) != one.parameter.ValueIn(model)) {
+      result.is_changed = true;
+      if (!result.IsCalibrated(one.parameter.name)) {
+        result.calibrated.push_back(one.parameter.name);
+      }
+    }
+  }
   return calibrated;
 }
 
@@ -143,6 +156,8 @@ PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recordin
   constexpr size_t kFrames = 150;
   constexpr double kDegree = std::numbers::pi / 180.0;
   options = OptionsOfRun(std::move(options));
+  options.readout_time = 0.0;
+  options.depth.disparity_offset = 0.0;
   const PinholeCamera sized{
       .width = options.camera.width, .height = options.camera.height, .bf = options.camera.bf};
   const size_t frames = std::min(kFrames, recording.frames);
@@ -161,10 +176,10 @@ PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recordin
         calibration.on_frame(0, ++done, kFields.size() * frames);
       }
     });
-    if (!IsEnough(problem) || IsCancelled(calibration)) {
+    if (!IsEnough(problem) || IsRequested(calibration.cancellation)) {
       continue;
     }
-    CameraModel model = ModelOf(MakeSensor(options));
+    const CameraModel model = ModelOf(MakeSensor(options), 0.0);
     CameraAdjustment adjustment(
         problem, model,
         ParametersOf(model, {.principal_point = false, .readout = false, .disparity = false},
@@ -172,7 +187,7 @@ PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recordin
     adjustment.Solve({});
     // A wrong camera loses landmarks, and the errors of those that are left are larger.
     const double score = static_cast<double>(problem.CountObservations()) /
-                         std::max(0.1, adjustment.VarianceFactor());
+                         std::max(0.1, adjustment.AtMinimum().variance_factor);
     if (score > most) {
       most = score;
       best = adjustment.model().camera;

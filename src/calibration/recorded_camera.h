@@ -23,19 +23,19 @@ struct CameraRecording {
 };
 
 struct RecordedCalibrationOptions {
-  CalibrationChoice choice;
+  CameraCalibrationOptions camera;
   int max_passes = 4;
-  double slack = 1.0;                          // as in CalibrateCamera()
   const Cancellation* cancellation = nullptr;  // may be null
   // Called after each frame, with the number of the pass, that of the frame and that of all frames
   // of the pass, from 1 on. May be empty.
   std::function<void(int pass, size_t frame, size_t frames)> on_frame = {};
 };
 
-// The result of all passes. Also says why it is not good.
+// The result of all passes.
 struct RecordedCalibration {
-  CameraCalibrationResult result;  // of the last pass; `given` is the camera of the options
-  CalibrationProblem problem;      // of the last pass
+  // Of the last pass; `given` and its median error are those of the camera of the options.
+  CameraCalibrationResult result;
+  CalibrationProblem problem;  // of the last pass
   int passes = 0;
 };
 

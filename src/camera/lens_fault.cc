@@ -18,7 +18,7 @@ namespace {
 std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
   if (const WideModel* const model = FindWideModel(camera.lens);
       model != nullptr && model->coefficients.front().field != &PinholeCamera::k1) {
-    const WideModel::Coefficient& last = model->coefficients.back();
+    const LensCoefficient& last = model->coefficients.back();
     return "Camera." + std::string(last.name) + " is '" + PrintNumber(camera.*last.field) + "': ";
   }
   const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
@@ -93,19 +93,19 @@ std::string FindBrownFault(const PinholeCamera& camera) {
 
 // A coefficient that the lens does not have.
 std::string FindForeignCoefficient(const PinholeCamera& camera) {
-  constexpr std::array<WideModel::Coefficient, 11> kAll = {{{"p1", &PinholeCamera::p1},
-                                                            {"p2", &PinholeCamera::p2},
-                                                            {"k5", &PinholeCamera::k5},
-                                                            {"k6", &PinholeCamera::k6},
-                                                            {"k1", &PinholeCamera::k1},
-                                                            {"k2", &PinholeCamera::k2},
-                                                            {"k3", &PinholeCamera::k3},
-                                                            {"k4", &PinholeCamera::k4},
-                                                            {"xi", &PinholeCamera::xi},
-                                                            {"alpha", &PinholeCamera::alpha},
-                                                            {"beta", &PinholeCamera::beta}}};
+  constexpr std::array<LensCoefficient, 11> kAll = {{{"p1", &PinholeCamera::p1},
+                                                     {"p2", &PinholeCamera::p2},
+                                                     {"k5", &PinholeCamera::k5},
+                                                     {"k6", &PinholeCamera::k6},
+                                                     {"k1", &PinholeCamera::k1},
+                                                     {"k2", &PinholeCamera::k2},
+                                                     {"k3", &PinholeCamera::k3},
+                                                     {"k4", &PinholeCamera::k4},
+                                                     {"xi", &PinholeCamera::xi},
+                                                     {"alpha", &PinholeCamera::alpha},
+                                                     {"beta", &PinholeCamera::beta}}};
   const WideModel* const model = FindWideModel(camera.lens);
-  const auto is_of_lens = [&](const WideModel::Coefficient& one) {
+  const auto is_of_lens = [&](const LensCoefficient& one) {
     if (model == nullptr) {
       return one.field != &PinholeCamera::xi && one.field != &PinholeCamera::alpha &&
              one.field != &PinholeCamera::beta;
@@ -113,7 +113,7 @@ std::string FindForeignCoefficient(const PinholeCamera& camera) {
     return std::any_of(model->coefficients.begin(), model->coefficients.end(),
                        [&](const auto& own) { return own.field == one.field; });
   };
-  for (const WideModel::Coefficient& one : kAll) {
+  for (const LensCoefficient& one : kAll) {
     const double unused = PinholeCamera().*one.field;
     if (!is_of_lens(one) && camera.*one.field != unused) {
       return "Camera." + std::string(one.name) + " is '" + PrintNumber(camera.*one.field) +

@@ -29,18 +29,14 @@ constexpr std::array<NamedModel, 8> kModels = {{
     {.name = "opencv", .most = 8},
 }};
 
-constexpr std::array<Field, 8> kBrownFields = {
-    &PinholeCamera::k1, &PinholeCamera::k2, &PinholeCamera::p1, &PinholeCamera::p2,
-    &PinholeCamera::k3, &PinholeCamera::k4, &PinholeCamera::k5, &PinholeCamera::k6};
-
 bool AreZero(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0.0; });
 }
 
 void ForgetLens(PinholeCamera& camera) {
   camera.lens = LensModel::kBrown;
-  for (const Field field : kBrownFields) {
-    camera.*field = 0.0;
+  for (const LensCoefficient& one : CoefficientsOf(LensModel::kBrown)) {
+    camera.*one.field = 0.0;
   }
   for (const Field field : {&PinholeCamera::xi, &PinholeCamera::alpha, &PinholeCamera::beta}) {
     camera.*field = PinholeCamera().*field;
@@ -52,7 +48,7 @@ std::string SetWide(const WideModel& model, std::span<const double> coefficients
   const size_t count = model.coefficients.size();
   if (coefficients.size() < count || !AreZero(coefficients.subspan(count))) {
     std::string names;
-    for (const WideModel::Coefficient& one : model.coefficients) {
+    for (const LensCoefficient& one : model.coefficients) {
       (names += ' ') += one.name;
     }
     return "expected " + std::to_string(count) + " coefficients:" + names;
@@ -92,7 +88,7 @@ std::string SetNamedLens(std::string_view model, std::span<const double> coeffic
            " coefficients: k1 k2 p1 p2 [k3 [k4 k5 k6]]";
   }
   for (size_t i = 0; i < used; ++i) {
-    camera.*kBrownFields.at(i) = coefficients[i];
+    camera.*CoefficientsOf(LensModel::kBrown)[i].field = coefficients[i];
   }
   return {};
 }
@@ -103,6 +99,22 @@ std::string SetLensOfKalibr(std::string_view model, std::span<const double> coef
   camera.fx /= 1.0 + camera.xi;
   camera.fy /= 1.0 + camera.xi;
   return expected;
+}
+
+NamedLens LensOfRos(const PinholeCamera& camera) {
+  NamedLens lens;
+  for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
+    lens.coefficients.push_back(camera.*one.field);
+  }
+  if (const WideModel* const wide = FindWideModel(camera.lens)) {
+    lens.model = wide->names.front();
+    return lens;
+  }
+  constexpr size_t kOfPlumbBob = 5;
+  const bool is_rational = !AreZero(std::span(lens.coefficients).subspan(kOfPlumbBob));
+  lens.model = is_rational ? "rational_polynomial" : "plumb_bob";
+  lens.coefficients.resize(is_rational ? lens.coefficients.size() : kOfPlumbBob);
+  return lens;
 }
 
 std::string DescribeLens(const PinholeCamera& camera) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hullslam/camera/pinhole.h"
 
@@ -26,6 +27,14 @@ std::string SetNamedLens(std::string_view model, std::span<const double> coeffic
 // set before, become those on the axis of a double sphere.
 std::string SetLensOfKalibr(std::string_view model, std::span<const double> coefficients,
                             PinholeCamera& camera);
+
+// The lens as messages and calibrations of ROS have it: plumb_bob with five coefficients,
+// rational_polynomial with eight, or a wide lens.
+struct NamedLens {
+  std::string_view model;
+  std::vector<double> coefficients;
+};
+NamedLens LensOfRos(const PinholeCamera& camera);
 
 // "without distortion", "with radial-tangential distortion", "with rational distortion" or, for
 // example, "with a fisheye lens (Kannala-Brandt)".

@@ -106,20 +106,19 @@ double LargestOfExtendedUnified(const PinholeCamera& camera, double limit) {
 
 // ---- all of them
 
-using Coefficient = WideModel::Coefficient;
-
 constexpr std::array<std::string_view, 4> kKannalaBrandtNames = {
     "equidistant", "fisheye", "kannala_brandt", "kannalabrandt8"};
-constexpr std::array<Coefficient, 4> kKannalaBrandtCoefficients = {{{"k1", &PinholeCamera::k1},
-                                                                    {"k2", &PinholeCamera::k2},
-                                                                    {"k3", &PinholeCamera::k3},
-                                                                    {"k4", &PinholeCamera::k4}}};
+constexpr std::array<LensCoefficient, 4> kKannalaBrandtCoefficients = {
+    {{"k1", &PinholeCamera::k1},
+     {"k2", &PinholeCamera::k2},
+     {"k3", &PinholeCamera::k3},
+     {"k4", &PinholeCamera::k4}}};
 constexpr std::array<std::string_view, 3> kDoubleSphereNames = {"double_sphere", "ds",
                                                                 "doublesphere"};
-constexpr std::array<Coefficient, 2> kDoubleSphereCoefficients = {
+constexpr std::array<LensCoefficient, 2> kDoubleSphereCoefficients = {
     {{"xi", &PinholeCamera::xi}, {"alpha", &PinholeCamera::alpha}}};
 constexpr std::array<std::string_view, 2> kExtendedUnifiedNames = {"eucm", "extended_unified"};
-constexpr std::array<Coefficient, 2> kExtendedUnifiedCoefficients = {
+constexpr std::array<LensCoefficient, 2> kExtendedUnifiedCoefficients = {
     {{"alpha", &PinholeCamera::alpha}, {"beta", &PinholeCamera::beta}}};
 
 constexpr auto kWideModels = std::to_array<WideModel>({
@@ -148,6 +147,19 @@ std::vector<std::string> LensTypes() {
     types.emplace_back(model.type);
   }
   return types;
+}
+
+std::span<const LensCoefficient> CoefficientsOf(LensModel lens) {
+  static constexpr std::array<LensCoefficient, 8> kBrown = {{{"k1", &PinholeCamera::k1},
+                                                             {"k2", &PinholeCamera::k2},
+                                                             {"p1", &PinholeCamera::p1},
+                                                             {"p2", &PinholeCamera::p2},
+                                                             {"k3", &PinholeCamera::k3},
+                                                             {"k4", &PinholeCamera::k4},
+                                                             {"k5", &PinholeCamera::k5},
+                                                             {"k6", &PinholeCamera::k6}}};
+  const WideModel* const wide = FindWideModel(lens);
+  return wide != nullptr ? wide->coefficients : std::span<const LensCoefficient>(kBrown);
 }
 
 const WideModel* FindWideModel(LensModel lens) {

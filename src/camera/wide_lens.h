@@ -22,22 +22,26 @@ struct LensRadius {
   double slope = 1.0;
 };
 
-// What HullSLAM knows of a lens.
+// A coefficient of a lens.
+struct LensCoefficient {
+  std::string_view name;  // of the key Camera.NAME
+  double PinholeCamera::*field;
+};
+
+// What HullSLAM knows of a wide lens.
 struct WideModel {
-  struct Coefficient {
-    std::string_view name;  // of the key Camera.NAME
-    double PinholeCamera::*field;
-  };
   LensModel lens;
   std::string_view type;   // the value of Camera.type
   std::string_view title;  // "a fisheye lens (Kannala-Brandt)"
   // In calibration files, in lower case; messages of ROS have the first one.
   std::span<const std::string_view> names;
-  std::span<const Coefficient> coefficients;  // in the order of calibration files
+  std::span<const LensCoefficient> coefficients;  // in the order of calibration files
   LensRadius (*radius)(const PinholeCamera& camera, double angle);
   double (*largest)(const PinholeCamera& camera, double limit);  // see LargestAngle()
 };
 std::span<const WideModel> WideModels();  // in the order of LensModel
+// The coefficients of any lens. Those of Brown's are in OpenCV's order: k1, k2, p1, p2, k3 to k6.
+std::span<const LensCoefficient> CoefficientsOf(LensModel lens);
 // The values of Camera.type in the order of LensModel: "PinHole", then those of WideModels().
 std::vector<std::string> LensTypes();
 // Null for a pinhole, and for a name that no model has in `names`, in upper or lower case.

@@ -120,18 +120,7 @@ std::string JpegMessage(RosTime time, std::string_view jpeg) {
 namespace {
 
 void PutLens(const PinholeCamera& camera, CdrWriter& message) {
-  std::vector<double> numbers = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
-  std::string_view model = "plumb_bob";
-  if (const WideModel* const wide = FindWideModel(camera.lens)) {
-    model = wide->names.front();
-    numbers.clear();
-    for (const WideModel::Coefficient& one : wide->coefficients) {
-      numbers.push_back(camera.*one.field);
-    }
-  } else if (camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0) {
-    model = "rational_polynomial";
-    numbers.insert(numbers.end(), {camera.k4, camera.k5, camera.k6});
-  }
+  const auto [model, numbers] = LensOfRos(camera);
   message.PutText(model);
   message.PutCount(numbers.size());
   for (const double number : numbers) {

@@ -2,7 +2,11 @@
 #include "frame/reduced_frame.h"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 #include <vector>
+
+#include "frame/rolling_shutter.h"
 
 namespace hullslam {
 namespace {
@@ -33,6 +37,14 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
     if (!frame.words.empty()) {
       reduced->words.push_back(frame.words.at(keypoint));
     }
+  }
+  if (frame.shutter != nullptr) {
+    auto shutter = std::make_shared<ShutterMotion>();
+    shutter->velocity = frame.shutter->velocity;
+    for (const uint32_t keypoint : keypoints) {
+      shutter->inverse_depths.push_back(frame.shutter->inverse_depths.at(keypoint));
+    }
+    reduced->shutter = std::move(shutter);
   }
   reduced->detections.reserve(detections.size());
   for (const uint32_t index : detections) {

@@ -49,7 +49,7 @@ uint8_t LensFlagOf(const PinholeCamera& camera) {
 void WriteNamedLens(const PinholeCamera& camera, ByteWriter& out) {
   const WideModel& model = *FindWideModel(camera.lens);
   out.PutText(std::string(model.type));
-  for (const WideModel::Coefficient& one : model.coefficients) {
+  for (const LensCoefficient& one : model.coefficients) {
     out.Put(camera.*one.field);
   }
 }
@@ -58,7 +58,7 @@ void ReadNamedLens(ByteReader& in, PinholeCamera& camera) {
   const WideModel* const model = FindWideModel(in.GetText());
   in.Require(model != nullptr, "has a lens that this version does not know");
   camera.lens = model->lens;
-  for (const WideModel::Coefficient& one : model->coefficients) {
+  for (const LensCoefficient& one : model->coefficients) {
     camera.*one.field = in.GetFinite(kMostMapNumber);
   }
 }

@@ -84,7 +84,7 @@ Json ToJson(const PinholeCamera& camera) {
   }
   if (const WideModel* const model = FindWideModel(camera.lens)) {
     json["type"] = std::string(model->type);
-    for (const WideModel::Coefficient& one : model->coefficients) {
+    for (const LensCoefficient& one : model->coefficients) {
       if (const std::string key(one.name); !json.contains(key) && camera.*one.field != 0.0) {
         json[key] = camera.*one.field;
       }

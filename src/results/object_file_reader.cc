@@ -46,7 +46,7 @@ PinholeCamera ReadCamera(const JsonNode& node) {
       node.At("type").Fail(fmt::format("one of {}", fmt::join(LensTypes(), ", ")));
     }
     camera.lens = model->lens;
-    for (const WideModel::Coefficient& one : model->coefficients) {
+    for (const LensCoefficient& one : model->coefficients) {
       camera.*one.field = NumberOrZero(node, std::string(one.name).c_str());
     }
   }

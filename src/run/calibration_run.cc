@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "hullslam/util/error.h"
@@ -14,6 +15,7 @@
 #include "run/progress.h"
 #include "run/vocabularies.h"
 #include "settings/camera_file.h"
+#include "system/make_sensor.h"
 #include "util/counted.h"
 
 namespace hullslam {
@@ -25,11 +27,8 @@ std::vector<OpenedDataset> OpenAll(const CalibrationRun& run) {
   for (const std::filesystem::path& sequence : run.sequences) {
     AnyDatasetArguments any = run.any;
     const FoundDataset found = FindDataset(sequence, any.sensor, any.choices);
-    const bool has_field = std::ranges::any_of(found.dataset->options, [](const auto& option) {
-      return std::string_view(option.key) == "fov";
-    });
-    if (run.is_unknown && run.settings.empty() && has_field && !any.choices.contains("fov")) {
-      any.choices["fov"] = kAnyFieldOfView;
+    if (run.is_unknown && run.settings.empty()) {
+      ChooseAnyFieldOfView(*found.dataset, any.choices);
     }
     opened.push_back(OpenAnyDataset(any, {.path = sequence,
                                           .settings = run.settings,
@@ -56,6 +55,15 @@ std::string NumberWithUnit(const ParameterEvidence& one, double value) {
 
 }  // namespace
 
+void ChooseAnyFieldOfView(const Dataset& dataset, DatasetChoices& choices) {
+  constexpr const char* kKey = "fov";
+  if (std::ranges::any_of(dataset.options, [](const DatasetOption& option) {
+        return std::string_view(option.key) == kKey;
+      })) {
+    choices.try_emplace(kKey, "65");
+  }
+}
+
 CalibratedRun RunCalibration(const CalibrationRun& run) {
   std::vector<OpenedDataset> opened = OpenAll(run);
   SystemOptions options = opened.front().settings.options;
@@ -68,11 +76,14 @@ CalibratedRun RunCalibration(const CalibrationRun& run) {
                             return sequence.load(sequence.frames[frame], camera);
                           }});
   }
+  const bool is_pair = MakeSensor(options).IsStereo();
   std::unique_ptr<Progress> progress;
   int shown_pass = -1;
   RecordedCalibrationOptions calibration{
-      .choice = {}, .max_passes = run.max_passes, .cancellation = &Interruption()};
-  calibration.choice.disparity = options.sensor == SensorKind::kRgbd;
+      .camera = {}, .max_passes = run.max_passes, .cancellation = &Interruption()};
+  // The images of a pair are rectified, so they have no distortion.
+  calibration.camera.choice.distortion = !is_pair;
+  calibration.camera.choice.disparity = options.sensor == SensorKind::kRgbd;
   calibration.on_frame = [&](int pass, size_t frame, size_t frames) {
     if (pass != shown_pass) {
       if (progress) {
@@ -87,9 +98,11 @@ CalibratedRun RunCalibration(const CalibrationRun& run) {
   };
   if (run.is_unknown) {
     constexpr double kSlack = 8.0;
-    calibration.slack = kSlack;
+    calibration.camera.slack = kSlack;
     options.camera = GuessCamera(options, recordings.front(), calibration);
     options.readout_time = 0.0;
+  } else {
+    calibration.camera.trusted_focal_length = options.camera.fx;
   }
   CalibratedRun calibrated;
   calibrated.calibration = CalibrateFromRecordings(options, recordings, calibration);
@@ -101,7 +114,6 @@ CalibratedRun RunCalibration(const CalibrationRun& run) {
   for (const std::filesystem::path& sequence : run.sequences) {
     calibrated.sequences.push_back(sequence.string());
   }
-  calibrated.is_unknown = run.is_unknown;
   return calibrated;
 }
 

@@ -26,14 +26,14 @@ struct CalibrationRun {
   bool is_quiet = false;
 };
 
-// The choice of a field of view of a video whose camera is not known. Its value is not used.
-inline constexpr const char* kAnyFieldOfView = "65";
+// A data set that needs a field of view or settings gets one, which a calibration from nothing does
+// not use.
+void ChooseAnyFieldOfView(const Dataset& dataset, DatasetChoices& choices);
 
 struct CalibratedRun {
   RecordedCalibration calibration;
   SystemOptions options;  // with the calibrated camera
   std::vector<std::string> sequences;
-  bool is_unknown = false;
 };
 
 // Runs SLAM on the sequences and calibrates their camera. Shows the progress. Throws InputError for

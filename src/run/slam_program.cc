@@ -2,10 +2,8 @@
 #include "run/slam_program.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,11 +36,8 @@ bool Parse(CLI::App& app, int argc, char** argv) {
 void SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoices& choices) {
   constexpr size_t kFrames = 1200;
   const bool is_unknown = arguments.settings.empty();
-  const bool has_field = std::ranges::any_of(dataset.options, [](const DatasetOption& option) {
-    return std::string_view(option.key) == "fov";
-  });
-  if (is_unknown && has_field) {
-    choices.try_emplace("fov", kAnyFieldOfView);
+  if (is_unknown) {
+    ChooseAnyFieldOfView(dataset, choices);
   }
   const CalibratedRun calibrated =
       RunCalibration({.sequences = {arguments.sequence},

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <string_view>
 
 #include "camera/named_lens.h"
@@ -14,35 +13,14 @@
 namespace hullslam {
 namespace {
 
-struct BrownCoefficient {
-  const char* name;
-  double PinholeCamera::*field;
-};
-
-// In the order of OpenCV.
-constexpr std::array<BrownCoefficient, 8> kBrown = {{{"k1", &PinholeCamera::k1},
-                                                     {"k2", &PinholeCamera::k2},
-                                                     {"p1", &PinholeCamera::p1},
-                                                     {"p2", &PinholeCamera::p2},
-                                                     {"k3", &PinholeCamera::k3},
-                                                     {"k4", &PinholeCamera::k4},
-                                                     {"k5", &PinholeCamera::k5},
-                                                     {"k6", &PinholeCamera::k6}}};
-
-// The coefficients of the lens in the order of calibration files. Those of Brown's lens that are 0
-// are left out from the end on, down to `least` of them.
+// In the order of calibration files. Coefficients of Brown's lens that are 0 are left out from the
+// end on, down to the `least` first ones.
 std::vector<double> Coefficients(const PinholeCamera& camera, size_t least) {
   std::vector<double> numbers;
-  if (const WideModel* const wide = FindWideModel(camera.lens)) {
-    for (const WideModel::Coefficient& one : wide->coefficients) {
-      numbers.push_back(camera.*one.field);
-    }
-    return numbers;
-  }
-  for (const BrownCoefficient& one : kBrown) {
+  for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
     numbers.push_back(camera.*one.field);
   }
-  while (numbers.size() > least && numbers.back() == 0.0) {
+  while (camera.lens == LensModel::kBrown && numbers.size() > least && numbers.back() == 0.0) {
     numbers.pop_back();
   }
   return numbers;
@@ -103,21 +81,14 @@ std::string Colmap(const PinholeCamera& camera) {
     Refuse(camera, "COLMAP");
   } else if (coefficients.size() > 4) {
     model = "FULL_OPENCV";
-    coefficients.resize(kBrown.size());
+    coefficients.resize(CoefficientsOf(camera.lens).size());
   }
   return fmt::format("1 {} {} {} {} {} {} {} {}\n", model, camera.width, camera.height, camera.fx,
                      camera.fy, camera.cx + 0.5, camera.cy + 0.5, fmt::join(coefficients, " "));
 }
 
 std::string Ros(const PinholeCamera& camera) {
-  std::vector<double> coefficients = Coefficients(camera, 5);
-  if (camera.lens == LensModel::kBrown && coefficients.size() > 5) {
-    coefficients.resize(kBrown.size());
-  }
-  const std::string model = camera.lens != LensModel::kBrown
-                                ? std::string(FindWideModel(camera.lens)->names.front())
-                            : coefficients.size() > 5 ? "rational_polynomial"
-                                                      : "plumb_bob";
+  const auto [model, coefficients] = LensOfRos(camera);
   return fmt::format(
       "image_width: {}\nimage_height: {}\ncamera_name: camera\n"
       "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n"
@@ -143,14 +114,8 @@ std::vector<NamedSetting> CameraSettings(const PinholeCamera& camera) {
   add("fy", camera.fy);
   add("cx", camera.cx);
   add("cy", camera.cy);
-  if (const WideModel* const wide = FindWideModel(camera.lens)) {
-    for (const WideModel::Coefficient& one : wide->coefficients) {
-      add(one.name, camera.*one.field);
-    }
-  } else {
-    for (const BrownCoefficient& one : kBrown) {
-      add(one.name, camera.*one.field);
-    }
+  for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
+    add(one.name, camera.*one.field);
   }
   add("width", camera.width);
   add("height", camera.height);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <opencv2/core.hpp>
+#include <type_traits>
 
 namespace hullslam {
 namespace {
@@ -89,6 +90,37 @@ TEST(FitDepth, ShapesAreComparedByTheRatioOfTheirSides) {
   EXPECT_FALSE(HaveSameShape({640, 480}, {1280, 720}));
   EXPECT_FALSE(HaveSameShape({480, 640}, {640, 480}));
   EXPECT_FALSE(HaveSameShape({0, 0}, {640, 480}));
+}
+
+// A camera that measures disparities bf / z that are too large by an offset.
+TEST(WithoutDisparityOffset, GivesTheDepthThatACameraWithoutOffsetMeasures) {
+  constexpr double kOffset = 0.8;  // px
+  constexpr double kBf = 40.0;     // m px
+  for (const int type : {CV_16UC1, CV_32FC1}) {
+    cv::Mat measured = PlaneImage({64, 48}, type);
+    const cv::Mat truth = measured.clone();
+    const double units = type == CV_16UC1 ? 1000.0 : 1.0;
+    const auto shift = [&](auto& value) {
+      value = cv::saturate_cast<std::remove_reference_t<decltype(value)>>(
+          units * kBf / (kBf / (static_cast<double>(value) / units) + kOffset));
+    };
+    for (int y = 0; y < measured.rows; ++y) {
+      for (int x = 0; x < measured.cols; ++x) {
+        type == CV_16UC1 ? shift(measured.at<uint16_t>(y, x)) : shift(measured.at<float>(y, x));
+      }
+    }
+    const cv::Mat corrected = WithoutDisparityOffset(measured, kOffset, kBf, 1000.0);
+    EXPECT_LT(cv::norm(corrected, truth, cv::NORM_INF), type == CV_16UC1 ? 2.0 : 1e-5);
+  }
+}
+
+TEST(WithoutDisparityOffset, UnknownAndImpossibleDepthsAreUnknown) {
+  cv::Mat depth(1, 3, CV_32FC1);
+  depth.at<float>(0, 0) = 0.0F;
+  depth.at<float>(0, 1) = std::numeric_limits<float>::quiet_NaN();
+  depth.at<float>(0, 2) = 100.0F;  // a disparity of 0.4 px, less than the offset
+  const cv::Mat corrected = WithoutDisparityOffset(depth, 0.5, 40.0, 1000.0);
+  EXPECT_EQ(cv::countNonZero(corrected), 0);
 }
 
 }  // namespace

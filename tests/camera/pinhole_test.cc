@@ -263,5 +263,13 @@ TEST_P(Lens, TheImageBeginsAtItsFirstPixelAndEndsBeforeItsSize) {
   EXPECT_FALSE(camera().SeesRaw({camera().cx, -0.001}));
 }
 
+TEST(IsWide, OnlyALensWhoseImageReachesTheLargestAngleIs) {
+  EXPECT_TRUE(FisheyeCamera().IsWide());      // 150 degrees across, more in the corners
+  EXPECT_FALSE(PinholeAsFisheye().IsWide());  // a narrow lens in the model of a fisheye
+  PinholeCamera brown = PinholeAsFisheye();
+  brown.lens = LensModel::kBrown;
+  EXPECT_FALSE(brown.IsWide());
+}
+
 }  // namespace
 }  // namespace hullslam

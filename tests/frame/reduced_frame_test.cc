@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
+
+#include "frame/rolling_shutter.h"
 
 namespace hullslam {
 namespace {
@@ -65,6 +68,23 @@ TEST(ReducedFrame, FindsItsKeypointsUnderTheirNewIndices) {
     EXPECT_EQ(found, std::vector<uint32_t>{i});
   }
   EXPECT_TRUE(reduced->detections.empty());
+}
+
+TEST(ReducedFrame, KeepsHowTheShutterOfItsKeypointsWasCorrected) {
+  Frame frame;
+  frame.features.keypoints.resize(3);
+  frame.features.descriptors.resize(3);
+  frame.features.depth.resize(3);
+  frame.features.grid = FeatureGrid(frame.features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
+  auto shutter = std::make_shared<ShutterMotion>();
+  shutter->velocity.linear = {1.0, 2.0, 3.0};
+  shutter->inverse_depths = {0.1, 0.2, 0.3};
+  frame.shutter = shutter;
+  const std::vector<uint32_t> kept = {0, 2};
+  const auto reduced = ReduceFrame(frame, kept, {});
+  ASSERT_NE(reduced->shutter, nullptr);
+  EXPECT_EQ(reduced->shutter->velocity.linear, shutter->velocity.linear);
+  EXPECT_EQ(reduced->shutter->inverse_depths, (std::vector<double>{0.1, 0.3}));
 }
 
 TEST(ReducedFrame, CanHaveNoKeypoints) {

@@ -241,6 +241,21 @@ TEST(WithGlobalShutter, KeepsDisparities) {
   EXPECT_EQ(features.depth[1], 0.0F);
 }
 
+TEST(BeforeCorrection, UndoesTheCorrection) {
+  const Sensor sensor = RollingSensor();
+  const Frame frame = FrameOf({{100.0, 450.0}, {500.0, 30.0}, {320.0, 100.0}});
+  const std::vector<double> depths = {0.5, 1.0, 0.0};
+  const PointVelocity velocity{.angular = {0.5, -0.4, 0.8}, .linear = {1.0, 0.3, -0.5}};
+  const auto corrected = WithGlobalShutter(frame, sensor, velocity, depths);
+  ASSERT_NE(corrected->shutter, nullptr);
+  for (size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector2d moved = corrected->features.keypoints[i].undistorted.cast<double>();
+    const Eigen::Vector2d read = frame.features.keypoints[i].undistorted.cast<double>();
+    EXPECT_GT((moved - read).norm(), 1.0);
+    EXPECT_LT((BeforeCorrection(sensor, *corrected->shutter, moved, i) - read).norm(), 1e-3);
+  }
+}
+
 TEST(WithGlobalShutter, LeavesTheFrameOfAStillCameraAsItIs) {
   Frame frame = FrameOf({{100.0, 450.0}});
   frame.id = FrameId(7);

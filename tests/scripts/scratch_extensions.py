@@ -155,7 +155,7 @@ LENS = Extension("a lens", 3, {}, {
 }
 double LargestOfScratch(const PinholeCamera& /*camera*/, double limit) { return limit; }
 constexpr std::array<std::string_view, 1> kScratchNames = {"scratch"};
-constexpr std::array<WideModel::Coefficient, 1> kScratchCoefficients = {{{"k1", &PinholeCamera::k1}}};
+constexpr std::array<LensCoefficient, 1> kScratchCoefficients = {{{"k1", &PinholeCamera::k1}}};
 """, "// ---- all of them"),
         ("     LargestOfExtendedUnified},\n",
          '{LensModel::kScratch, "Scratch", "a scratch lens", kScratchNames, kScratchCoefficients,\n'

@@ -87,10 +87,11 @@ cv::Mat BlurByMotion(const RenderedFrame& frame, const Scene& scene, const Pinho
     for (int x = 0; x < blurred.cols; ++x) {
       const Vector2d pixel(x, y);
       const auto object = static_cast<size_t>(frame.instance.at<int16_t>(y, x) + 1);
-      const Vector3d point = camera.Unproject(pixel, frame.depth.at<float>(y, x));
+      const Vector3d point = camera.Unproject(camera.Undistort(pixel), frame.depth.at<float>(y, x));
       const Vector3d moved = motions[object] * point;
       if (moved.z() > 0.0) {
-        blurred.at<cv::Vec3f>(y, x) = MeanAlong(frame.colour, pixel, camera.Project(moved) - pixel);
+        blurred.at<cv::Vec3f>(y, x) =
+            MeanAlong(frame.colour, pixel, camera.Distort(camera.Project(moved)) - pixel);
       }
     }
   }

@@ -147,8 +147,6 @@ struct Renderer::Fragment {
 
 Renderer::Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time)
     : scene_(scene), camera_(camera), readout_time_(readout_time), caster_(scene) {
-  Check(camera.IsFisheye() || !camera.IsDistorted(),
-        "the renderer needs a fisheye lens or a camera without distortion");
   if (camera.IsFisheye()) {
     largest_angle_ = LargestAngle(camera, std::numbers::pi);
   }
@@ -158,8 +156,9 @@ Vector3f Renderer::Direction(const Eye& eye, float x, float y) const {
   if (camera_.IsFisheye()) {
     return eye.world_from_cam * RayOfRawPixel(camera_, {x, y}, largest_angle_).cast<float>();
   }
-  const Vector3f in_cam(static_cast<float>((x - camera_.cx) / camera_.fx),
-                        static_cast<float>((y - camera_.cy) / camera_.fy), 1.0F);
+  const Eigen::Vector2d pixel = camera_.Undistort({x, y});
+  const Vector3f in_cam(static_cast<float>((pixel.x() - camera_.cx) / camera_.fx),
+                        static_cast<float>((pixel.y() - camera_.cy) / camera_.fy), 1.0F);
   return eye.world_from_cam * in_cam;
 }
 

@@ -28,8 +28,7 @@ struct RenderedFrame {
 // bits in every run.
 class Renderer {
  public:
-  // Keeps a reference to `scene`. The camera must have no distortion, or a fisheye lens, which is
-  // rendered exactly. `readout_time`: seconds from
+  // Keeps a reference to `scene`. Any lens is rendered exactly. `readout_time`: seconds from
   // the exposure of the top row of an image to that of the bottom row (rolling shutter).
   Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time = 0.0);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "camera/wide_lens.h"
 #include "hullslam/util/error.h"
 #include "synthetic/scenes.h"
 #include "synthetic/true_relations.h"
@@ -69,11 +70,15 @@ std::string IclAssociations(int frames) {
 }
 
 std::string LensSettings(const PinholeCamera& camera) {
-  return camera.IsFisheye() ? fmt::format(
-                                  "Camera.type: \"KannalaBrandt8\"\nCamera.k1: {}\nCamera.k2: {}\n"
-                                  "Camera.k3: {}\nCamera.k4: {}\n",
-                                  camera.k1, camera.k2, camera.k3, camera.k4)
-                            : "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n";
+  if (!camera.IsFisheye() && !camera.IsDistorted()) {
+    return "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n";
+  }
+  const WideModel* const wide = FindWideModel(camera.lens);
+  std::string text = wide != nullptr ? fmt::format("Camera.type: \"{}\"\n", wide->type) : "";
+  for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
+    text += fmt::format("Camera.{}: {}\n", one.name, camera.*one.field);
+  }
+  return text;
 }
 
 std::string CameraSettings(const SequencePlan& plan) {

@@ -23,7 +23,8 @@ struct SequenceOptions {
   double stereo_baseline = 0.0;
   // Degrees; above 0, a Kannala-Brandt lens has this field of view across the width of the image.
   double fisheye = 0.0;
-  int threads = 0;  // 0: as many as the CPU supports
+  std::optional<PinholeCamera> camera = std::nullopt;  // in place of the scene's, with any lens
+  int threads = 0;                                     // 0: as many as the CPU supports
 };
 
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.

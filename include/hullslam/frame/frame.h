@@ -24,7 +24,8 @@ struct Frame {
   std::vector<Detection> detections;
   DepthGrid depth;  // empty without depth
   // How the keypoints were corrected for a rolling shutter (frame/rolling_shutter.h), for
-  // detections that come later. Null if they were not, and once there are detections.
+  // detections that come later and for calibration. Null if they were not, and once there are
+  // detections.
   std::shared_ptr<const ShutterMotion> shutter;
 };
 

@@ -108,6 +108,34 @@ TEST_F(SequenceWriterTest, AFisheyeHasItsFieldOfViewAndItsSettings) {
               1e-6);
 }
 
+TEST_F(SequenceWriterTest, ADistortedCameraSeesTheSameAtItsRawPixels) {
+  PinholeCamera camera = SyntheticCamera();
+  camera.k1 = -0.2;
+  camera.p1 = 0.002;
+  const fs::path distorted =
+      Write("distorted", {.frames = 1, .noise = false, .readout_time = 0.02, .camera = camera});
+  const fs::path straight = Write("straight", {.frames = 1, .noise = false});
+  SettingsNotes report;
+  const SystemOptions options = ReadSettings(distorted / "camera.yaml", {}, report);
+  EXPECT_EQ(options.camera.k1, camera.k1);
+  EXPECT_EQ(options.camera.p1, camera.p1);
+  EXPECT_EQ(options.readout_time, 0.02);
+  const cv::Mat raw = cv::imread(distorted / "depth/1000.000000.png", cv::IMREAD_UNCHANGED);
+  const cv::Mat plain = cv::imread(straight / "depth/1000.000000.png", cv::IMREAD_UNCHANGED);
+  int equal = 0;
+  int all = 0;
+  for (int y = 60; y < 420; y += 12) {
+    for (int x = 80; x < 560; x += 12) {
+      const Eigen::Vector2d undistorted = camera.Undistort({x, y});
+      const int u = static_cast<int>(std::lround(undistorted.x()));
+      const int v = static_cast<int>(std::lround(undistorted.y()));
+      equal += std::abs(raw.at<uint16_t>(y, x) - plain.at<uint16_t>(v, u)) < 60 ? 1 : 0;
+      ++all;
+    }
+  }
+  EXPECT_GT(equal, 9 * all / 10) << all;
+}
+
 TEST_F(SequenceWriterTest, GroundTruthIsThePathOfTheCamera) {
   const fs::path folder = Write("out", {.frames = 3, .seed = 4});
   const Scene scene = BuildScene(SceneKind::kDesk, 3, 4);

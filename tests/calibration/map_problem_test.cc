@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibration/map_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "frame/rolling_shutter.h"
+#include "support/synthetic_world.h"
+#include "support/test_cameras.h"
+
+namespace hullslam {
+namespace {
+
+// The poses of a path with an image every `interval` seconds.
+Trajectory PathOf(const SyntheticWorld& world, uint32_t frames) {
+  Trajectory trajectory;
+  for (uint32_t i = 0; i < frames; ++i) {
+    trajectory.push_back(
+        {i / world.sensor().frames_per_second, Inverse(SyntheticWorld::CamFromWorld(i))});
+  }
+  return trajectory;
+}
+
+class MapProblem : public testing::TestWithParam<TestCamera> {};
+
+HULLSLAM_WITH_ALL_CAMERAS(MapProblem);
+
+TEST_P(MapProblem, TheResidualsOfATrueMapAreSmall) {
+  const SyntheticWorld world({.pixel_noise = 0.3}, GetParam().sensor);
+  const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20, 25, 30});
+  const CameraModel model = ModelOf(world.sensor(), 0.0);
+  const CalibrationProblem problem =
+      MakeProblem(made.map, world.sensor(), model, PathOf(world, 40));
+  ASSERT_EQ(problem.views.size(), 6U);
+  ASSERT_GT(problem.points.size(), 50U);
+  EXPECT_GT(problem.views[2].velocity.linear.norm(), 0.0);
+  const CameraAdjustment adjustment(problem, model, {});
+  EXPECT_LT(adjustment.MedianError(), 1.0);
+}
+
+// A map has depths without the offset; what was measured has it.
+TEST(MakeProblem, DisparitiesAreThoseThatWereMeasured) {
+  const SyntheticWorld world({}, SyntheticSensor());
+  const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
+  const auto problem_with = [&](double offset) {
+    return MakeProblem(made.map, world.sensor(), ModelOf(world.sensor(), offset),
+                       PathOf(world, 30));
+  };
+  const CalibrationProblem without = problem_with(0.0);
+  const CalibrationProblem with = problem_with(0.75);
+  size_t known = 0;
+  for (size_t i = 0; i < without.points.size(); ++i) {
+    for (size_t k = 0; k < without.observations[i].size(); ++k) {
+      const double disparity = without.observations[i][k].disparity;
+      known += disparity > 0.0 ? 1 : 0;
+      EXPECT_NEAR(with.observations[i][k].disparity, disparity > 0.0 ? disparity + 0.75 : 0.0,
+                  1e-9);
+    }
+  }
+  EXPECT_GT(known, 100U);
+}
+
+// Single photographs have no velocity, but a lens.
+TEST(MakeProblem, ImagesFarApartInTimeHaveNoVelocity) {
+  const SyntheticWorld world({}, SyntheticSensor());
+  const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
+  const CalibrationProblem problem =
+      MakeProblem(made.map, world.sensor(), ModelOf(world.sensor(), 0.0), {});
+  ASSERT_EQ(problem.views.size(), 4U);
+  EXPECT_EQ(MedianSpeed(problem, ModelOf(world.sensor(), 0.0)), 0.0);
+}
+
+// The map has keypoints as a global shutter would have seen them; the camera saw others.
+TEST(MakeProblem, RawPixelsAreThoseBeforeTheCorrectionOfTheShutter) {
+  Sensor sensor = SyntheticSensor();
+  sensor.readout_time = 0.02;
+  const SyntheticWorld world({}, SyntheticSensor());
+  const PointVelocity velocity{.angular = {0.4, 0.6, -0.3}, .linear = {0.3, 0.1, 0.2}};
+  const SyntheticMap as_read = MakeSyntheticMap(world, {5, 10, 15, 20});
+  const SyntheticMap corrected =
+      MakeSyntheticMap(world, {5, 10, 15, 20}, [&](Frame& frame, const Rigid3&) {
+        const std::vector<double> inverse_depths(frame.features.size(), 0.4);
+        frame = *WithGlobalShutter(frame, sensor, velocity, inverse_depths);
+      });
+  const auto problem_of = [&](const SyntheticMap& made) {
+    return MakeProblem(made.map, sensor, ModelOf(sensor, 0.0), PathOf(world, 30));
+  };
+  const CalibrationProblem expected = problem_of(as_read);
+  const CalibrationProblem found = problem_of(corrected);
+  ASSERT_EQ(found.CountObservations(), expected.CountObservations());
+  for (size_t i = 0; i < expected.points.size(); ++i) {
+    for (size_t k = 0; k < expected.observations[i].size(); ++k) {
+      EXPECT_LT((found.observations[i][k].raw - expected.observations[i][k].raw).norm(), 1e-2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
