@@ -18,7 +18,7 @@
 #include "results/finished_run.h"
 #include "results/scene_file.h"
 #include "types.h"
-#include "util/split_names.h"
+#include "util/text.h"
 #include "view/load_scene.h"
 #include "view/report.h"
 #include "without_gil.h"

@@ -12,7 +12,7 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

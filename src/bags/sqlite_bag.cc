@@ -11,7 +11,7 @@
 #include "files/canonical_path.h"
 #include "files/random_access_file.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "eval/depth_registration.h"
 #include "eval/mask_registration.h"
 #include "hullslam/util/error.h"
-#include "util/split_names.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

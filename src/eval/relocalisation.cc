@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

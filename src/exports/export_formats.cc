@@ -14,7 +14,7 @@
 #include "exports/pose_files.h"
 #include "exports/scene_ply.h"
 #include "files/atomic_file.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "results/ply_writer.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

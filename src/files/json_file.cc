@@ -9,7 +9,7 @@
 #include "files/read_text.h"
 #include "hullslam/util/error.h"
 #include "util/classic_locale.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

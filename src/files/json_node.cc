@@ -10,8 +10,7 @@
 #include "files/json_file.h"
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

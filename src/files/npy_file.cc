@@ -13,8 +13,7 @@
 #include "files/byte_reader.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

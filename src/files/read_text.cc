@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "util/printable.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "frame/patch_fit.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <random>
 
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 #include "hullslam/geometry/dual_quadric.h"
 #include "images/jpeg_codec.h"
 #include "map/islands.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

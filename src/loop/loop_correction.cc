@@ -9,7 +9,7 @@
 #include "map/islands.h"
 #include "objects/fusion.h"
 #include "optim/pose_graph.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

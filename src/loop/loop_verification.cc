@@ -12,7 +12,7 @@
 #include "map/covisibility.h"
 #include "optim/similarity_optimization.h"
 #include "places/similar_places.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 namespace {

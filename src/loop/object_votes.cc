@@ -7,7 +7,7 @@
 #include "geometry/polygon_overlap.h"
 #include "loop/loop_correction.h"
 #include "objects/visibility.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

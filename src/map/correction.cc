@@ -13,7 +13,7 @@
 #include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "util/id_set.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

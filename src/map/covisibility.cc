@@ -5,7 +5,7 @@
 #include <map>
 
 #include "map/spanning_tree.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "bow/vocabulary_builder.h"
 #include "bow/vocabulary_layout.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

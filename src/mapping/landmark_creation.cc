@@ -14,7 +14,7 @@
 #include "map/landmark_edits.h"
 #include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -11,7 +11,7 @@
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

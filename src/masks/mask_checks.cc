@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "frame/detection/sort_outlines.h"
-#include "util/ascii.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 std::string ImageStem(std::string_view name) {

@@ -9,7 +9,7 @@
 #include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

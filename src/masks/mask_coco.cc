@@ -16,7 +16,7 @@
 #include "masks/mask_coco_instance.h"
 #include "masks/mask_json.h"
 #include "masks/mask_rle.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

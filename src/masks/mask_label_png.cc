@@ -23,7 +23,7 @@
 #include "images/image_file.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_text.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "util/id_set.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

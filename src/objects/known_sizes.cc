@@ -7,7 +7,7 @@
 
 #include "objects/object_extents.h"
 #include "objects/resolved_observation.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 

@@ -13,7 +13,7 @@
 #include "geometry/polygon_overlap.h"
 #include "objects/resolved_observation.h"
 #include "objects/visibility.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

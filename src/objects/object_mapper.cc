@@ -23,7 +23,7 @@
 #include "objects/resolved_observation.h"
 #include "objects/start_method.h"
 #include "objects/visibility.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

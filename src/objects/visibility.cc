@@ -7,7 +7,7 @@
 #include "geometry/polyline.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

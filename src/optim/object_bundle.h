@@ -15,7 +15,7 @@
 #include "optim/bundle_result.h"
 #include "optim/bundle_window.h"
 #include "optim/object_sum_cost.h"
-#include "util/id_map.h"
+#include "util/id_set.h"
 
 namespace hullslam::internal {
 

@@ -15,7 +15,7 @@
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
 #include "results/scene_file.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

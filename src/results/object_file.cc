@@ -11,7 +11,7 @@
 #include "results/object_file_version.h"
 #include "results/ply_file.h"
 #include "results/scene_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -15,7 +15,7 @@
 #include "results/json_pose.h"
 #include "results/object_file.h"
 #include "results/object_file_version.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

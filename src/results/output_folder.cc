@@ -18,7 +18,7 @@
 #include "files/synced_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

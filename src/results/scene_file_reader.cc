@@ -8,7 +8,7 @@
 #include "files/json_node.h"
 #include "files/plausible.h"
 #include "results/scene_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -14,7 +14,7 @@
 #include "run/progress.h"
 #include "run/vocabularies.h"
 #include "settings/camera_file.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

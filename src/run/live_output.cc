@@ -17,8 +17,7 @@
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "system/make_sensor.h"
-#include "util/ascii.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

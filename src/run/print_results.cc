@@ -11,7 +11,7 @@
 
 #include "results/summarize_run.h"
 #include "run/messages.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -27,7 +27,7 @@
 #include "run/progress.h"
 #include "run/vocabularies.h"
 #include "segmentation/frame_source.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

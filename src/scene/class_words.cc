@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "util/ascii.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -10,8 +10,7 @@
 
 #include "hullslam/util/error.h"
 #include "scene/class_words.h"
-#include "util/edit_distance.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

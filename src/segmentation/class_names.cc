@@ -13,9 +13,7 @@
 
 #include "files/read_text.h"
 #include "hullslam/util/error.h"
-#include "util/ascii.h"
-#include "util/printable.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -18,7 +18,7 @@
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/util/error.h"
 #include "masks/yolo_text.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "segmentation/decode_cells.h"
 #include "segmentation/decode_rows.h"
 #include "segmentation/onnx_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -11,8 +11,7 @@
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
 #include "segmentation/onnx_graph.h"
-#include "util/counted.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
 #include "segmentation/onnx_tensor.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 #include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
 #include "segmentation/onnx_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -20,8 +20,7 @@
 #include "segmentation/open_network.h"
 #include "segmentation/suppress_overlaps.h"
 #include "util/components.h"
-#include "util/edit_distance.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

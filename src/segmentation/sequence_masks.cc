@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -11,7 +11,7 @@
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "settings/rotation_matrix.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -18,7 +18,7 @@
 #include "images/eight_bits.h"
 #include "images/image_file.h"
 #include "images/rvl_depth.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -20,7 +20,7 @@
 #include "sequences/image_list.h"
 #include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,8 +13,7 @@
 #include "files/natural_order.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
-#include "util/ascii.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -14,7 +14,7 @@
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
 #include "settings/yaml_map.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

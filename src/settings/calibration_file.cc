@@ -13,7 +13,7 @@
 #include "settings/basalt_calibration.h"
 #include "settings/yaml_lens.h"
 #include "settings/yaml_map.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -15,7 +15,7 @@
 #include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

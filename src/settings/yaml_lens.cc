@@ -9,7 +9,7 @@
 
 #include "camera/named_lens.h"
 #include "camera/wide_lens.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 

@@ -14,8 +14,7 @@
 #include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "util/ascii.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

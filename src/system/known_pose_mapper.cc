@@ -17,7 +17,7 @@
 #include "system/count_objects.h"
 #include "system/make_sensor.h"
 #include "system/pose_scale_check.h"
-#include "util/split_names.h"
+#include "util/text.h"
 
 namespace hullslam {
 struct KnownPoseMapper::State {

@@ -25,8 +25,8 @@
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
 #include "tracking/remembered_frame.h"
-#include "util/split_names.h"
 #include "util/task_runner.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -16,8 +16,7 @@
 #include "system/loop_stages.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
-#include "util/mailbox.h"
-#include "util/published.h"
+#include "util/between_threads.h"
 #include "util/thread_priority.h"
 
 namespace hullslam {

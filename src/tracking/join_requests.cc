@@ -6,7 +6,7 @@
 
 #include "map/islands.h"
 #include "tracking/image_overlap.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "map/covisibility.h"
-#include "util/id_map.h"
 #include "util/id_set.h"
 
 namespace hullslam {

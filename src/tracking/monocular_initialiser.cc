@@ -16,8 +16,8 @@
 #include "optim/bundle_adjustment.h"
 #include "tracking/shutter_correction.h"
 #include "tracking/sources/pixel_pairs.h"
-#include "util/random_seed.h"
-#include "util/reached_by.h"
+#include "util/hash.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

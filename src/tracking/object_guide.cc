@@ -8,7 +8,7 @@
 #include "hullslam/frame/instance_mask.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

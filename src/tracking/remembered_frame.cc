@@ -8,8 +8,8 @@
 #include "objects/constraint/object_constraint.h"
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
-#include "util/thin.h"
-#include "util/valid_ids.h"
+#include "util/id_set.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

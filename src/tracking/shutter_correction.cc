@@ -10,7 +10,7 @@
 #include "frame/rolling_shutter.h"
 #include "map/islands.h"
 #include "tracking/seen_depths.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -16,8 +16,7 @@
 #include "masks/mask_classes.h"
 #include "results/finished_run.h"
 #include "scene/question.h"
-#include "util/printable.h"
-#include "util/trim.h"
+#include "util/text.h"
 #include "view/answer_sheet.h"
 #include "view/view_of_run.h"
 

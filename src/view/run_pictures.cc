@@ -15,7 +15,7 @@
 #include "hullslam/util/error.h"
 #include "images/jpeg_codec.h"
 #include "sequences/frame_colour.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "files/base64.h"
 #include "results/json_text.h"
-#include "util/printable.h"
+#include "util/text.h"
 #include "view/packed_array.h"
 
 namespace hullslam {

@@ -13,7 +13,7 @@
 #include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

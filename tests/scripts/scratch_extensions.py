@@ -102,7 +102,7 @@ std::string WriteScratch(const ExportOptions& options, ExportInput& input);
 """,
     "src/exports/export_scratch.cc": HEAD + """#include "exports/export_scratch.h"
 #include "files/atomic_file.h"
-#include "util/counted.h"
+#include "util/text.h"
 namespace hullslam {
 std::string WriteScratch(const ExportOptions& options, ExportInput& input) {
   WriteFileAtomically(options.output, std::to_string(input.model.trajectory.size()));

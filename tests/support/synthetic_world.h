@@ -20,7 +20,7 @@
 #include "hullslam/map/map.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

@@ -19,7 +19,7 @@
 #include "synthetic/renderer.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_files.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

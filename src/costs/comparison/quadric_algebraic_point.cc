@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 
 #include "util/chi_square.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 

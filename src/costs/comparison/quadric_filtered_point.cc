@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "costs/comparison/quadric_algebraic_point.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "geometry/polygon_overlap.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

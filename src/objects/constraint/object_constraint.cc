@@ -16,7 +16,7 @@
 #include "costs/quadric_prior.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/constraint/raw_lines.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -17,7 +17,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
-#include "util/edit_distance.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

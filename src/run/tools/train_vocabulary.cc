@@ -18,7 +18,7 @@
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"
-#include "util/parallel_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

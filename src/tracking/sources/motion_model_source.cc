@@ -7,7 +7,7 @@
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
-#include "util/median.h"
+#include "util/order_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -15,8 +15,8 @@
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
-#include "util/id_map.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {

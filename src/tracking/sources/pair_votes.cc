@@ -11,7 +11,7 @@
 #include "places/similar_places.h"
 #include "places/wide_matches.h"
 #include "tracking/sources/pixel_pairs.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 namespace {

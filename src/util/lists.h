@@ -33,4 +33,11 @@ std::vector<T> EveryKth(const std::vector<T>& all, size_t count) {
   return thinned;
 }
 
+// Sorts the values and leaves each of them once.
+template <typename Value>
+void SortUnique(std::vector<Value>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 }  // namespace hullslam

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "util/parallel_runner.h"
+
+#include "util/task_runner.h"
 
 #include <algorithm>
 #include <thread>
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "util/shared_tasks.h"
 
 namespace hullslam {
 

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "util/reached_by.h"
+
+#include "util/order_statistics.h"
 
 #include <gtest/gtest.h>
 
-#include "util/median.h"
-
 namespace hullslam {
+
 namespace {
+
+TEST(Median, IsTheMiddleValueInAnyOrder) {
+  EXPECT_EQ(Median(std::vector{5.0}), 5.0);
+  EXPECT_EQ(Median(std::vector{9.0, 1.0, 5.0}), 5.0);
+  EXPECT_EQ(Median(std::vector{3, 3, 1, 3, 7}), 3);
+}
+
+TEST(Median, OfAnEvenNumberIsTheLargerOfTheMiddleTwo) {
+  EXPECT_EQ(Median(std::vector{4.0, 1.0, 3.0, 2.0}), 3.0);
+}
 
 TEST(ReachedBy, IsTheLargestValueThatThisShareReaches) {
   const std::vector<int> values = {7, 1, 8, 2, 6, 3, 5, 4};
@@ -23,4 +33,5 @@ TEST(ReachedBy, OfAHalfIsTheMedian) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "util/random_seed.h"
+
+#include "util/hash.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,16 @@
 #include <string>
 
 namespace hullslam {
+
 namespace {
+
+// Values of the authors' test vectors.
+TEST(Fnv1a, HasThePublishedValues) {
+  EXPECT_EQ(Fnv1a<uint32_t>(""), 0x811c9dc5U);
+  EXPECT_EQ(Fnv1a<uint32_t>("foobar"), 0xbf9cf968U);
+  EXPECT_EQ(Fnv1a<uint64_t>(""), 0xcbf29ce484222325U);
+  EXPECT_EQ(Fnv1a<uint64_t>("foobar"), 0x85944171f73967e8U);
+}
 
 // The expected values come from a second implementation in Python. If they changed, runs would not
 // be reproducible across versions.
@@ -41,4 +51,5 @@ TEST(HashSeed, ScattersNeighbours) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

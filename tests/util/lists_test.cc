@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "util/thin.h"
+
+#include "util/lists.h"
 
 #include <gtest/gtest.h>
 
 namespace hullslam {
+
 namespace {
 
 TEST(Thin, ChoosesEvenly) {
@@ -29,5 +31,15 @@ TEST(EveryKth, HasEqualSteps) {
   EXPECT_TRUE(EveryKth(std::vector<int>(), 3).empty());
 }
 
+TEST(SortUnique, LeavesEachValueOnceInOrder) {
+  std::vector<int> values = {3, 1, 3, 2, 1};
+  SortUnique(values);
+  EXPECT_EQ(values, (std::vector<int>{1, 2, 3}));
+  std::vector<int> none;
+  SortUnique(none);
+  EXPECT_TRUE(none.empty());
+}
+
 }  // namespace
+
 }  // namespace hullslam
