@@ -11,8 +11,8 @@
 
 #include "arrays.h"
 #include "exports/export_run.h"
-#include "files/atomic_file.h"
-#include "files/read_text.h"
+#include "files/read_file.h"
+#include "files/staged_file.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "module.h"
 #include "results/finished_run.h"

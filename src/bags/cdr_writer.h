@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 

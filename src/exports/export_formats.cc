@@ -13,7 +13,7 @@
 #include "exports/glb_file.h"
 #include "exports/pose_files.h"
 #include "exports/scene_ply.h"
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "util/text.h"
 
 namespace hullslam {

@@ -8,7 +8,7 @@
 
 #include "datasets/run_sequence.h"
 #include "eval/object_metrics.h"
-#include "files/canonical_path.h"
+#include "files/paths.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "map/islands.h"

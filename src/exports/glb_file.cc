@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
 #include "util/text.h"

@@ -6,8 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "files/byte_reader.h"
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map_tables.h"
 #include "hullslam/map_files/map_file.h"

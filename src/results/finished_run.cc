@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/text_rows.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/results/trajectory_file.h"

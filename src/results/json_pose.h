@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "files/json_node.h"
+#include "files/json_file.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {

@@ -8,7 +8,6 @@
 
 #include "camera/wide_lens.h"
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/plausible.h"
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"

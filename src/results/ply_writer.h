@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 #include "hullslam/geometry/rigid3.h"
 #include "results/unit_mesh.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "files/atomic_file.h"
 #include "files/plausible.h"
+#include "files/staged_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "results/json_pose.h"
 
 namespace hullslam {

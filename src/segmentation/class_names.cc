@@ -11,7 +11,7 @@
 #include <map>
 #include <utility>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "hullslam/util/error.h"
 #include "util/text.h"
 

@@ -13,7 +13,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "hullslam/util/error.h"
 #include "images/eight_bits.h"
 #include "images/image_file.h"

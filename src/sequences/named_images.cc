@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "files/natural_order.h"
+#include "files/paths.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
 #include "util/text.h"

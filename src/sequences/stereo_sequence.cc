@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/util/error.h"

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "camera/named_lens.h"
-#include "files/data_path.h"
+#include "files/paths.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/calibration_file.h"

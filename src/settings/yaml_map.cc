@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "util/text.h"

@@ -8,9 +8,9 @@
 #include <set>
 #include <system_error>
 
-#include "files/atomic_file.h"
 #include "files/npy_file.h"
-#include "files/read_text.h"
+#include "files/read_file.h"
+#include "files/staged_file.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "masks/mask_classes.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "support/made_export.h"
 
 namespace hullslam {

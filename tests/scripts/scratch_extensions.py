@@ -101,7 +101,7 @@ std::string WriteScratch(const ExportOptions& options, ExportInput& input);
 }  // namespace hullslam
 """,
     "src/exports/export_scratch.cc": HEAD + """#include "exports/export_scratch.h"
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "util/text.h"
 namespace hullslam {
 std::string WriteScratch(const ExportOptions& options, ExportInput& input) {

@@ -18,7 +18,7 @@
 #include "bags/decompress.h"
 #include "bags/field_reader.h"
 #include "bags/mcap_bag.h"
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "run/command_line.h"
 #include "run/live_output.h"
 #include "run/messages.h"

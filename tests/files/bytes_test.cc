@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "files/byte_reader.h"
+
+#include "files/bytes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +9,10 @@
 #include <limits>
 #include <string>
 
-#include "files/byte_writer.h"
 #include "support/expect_error.h"
 
 namespace hullslam {
+
 namespace {
 
 const Eigen::Matrix2d kMatrix = (Eigen::Matrix2d() << 1.0, -2.0, 3.5, 0.0).finished();
@@ -78,4 +79,5 @@ TEST(ByteReader, RefusesNumbersThatCannotBe) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "files/byte_reader.h"
+
+#include "files/bytes.h"
 
 #include "hullslam/util/error.h"
 
