@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
 

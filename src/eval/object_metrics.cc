@@ -6,7 +6,7 @@
 
 #include "eval/solid_angle.h"
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "loop/loop_correction.h"
 #include "objects/visibility.h"
 #include "util/lists.h"

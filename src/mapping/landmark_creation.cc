@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "frame/measure_point.h"
-#include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"

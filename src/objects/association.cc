@@ -6,7 +6,7 @@
 
 #include "frame/detection/visible_part.h"
 #include "geometry/assignment.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/combined_similarity.h"
 #include "objects/comparison/association_measure.h"
 #include "objects/constraint/carried_hull.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/constraint/point_statistics.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "map/islands.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "geometry/assignment.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/resolved_observation.h"
 #include "objects/visibility.h"
 #include "util/order_statistics.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "objects/constraint/misfit.h"
 

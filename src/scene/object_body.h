@@ -13,6 +13,10 @@
 
 namespace hullslam {
 
+// The direction with this index (from 0) of `count` unit vectors that are evenly spread over the
+// sphere: a Fibonacci lattice. The first half of them has z > 0.
+Eigen::Vector3d SphereDirection(int index, int count);
+
 // The space that an object takes up, in an upright frame; relations are computed from it. This
 // frame has the origin and the unit of the world, and z upwards.
 struct ObjectBody {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 namespace {

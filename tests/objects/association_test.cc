@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"

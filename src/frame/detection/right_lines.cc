@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "util/order_statistics.h"
 
 namespace hullslam {

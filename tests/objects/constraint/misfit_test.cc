@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 #include "support/test_cameras.h"

@@ -8,6 +8,11 @@
 
 namespace hullslam {
 
+// Corners of the convex hull in the order of positive signed area, without collinear ones, starting
+// at the smallest x (then y). QuickHull (Bykat 1978), by CGAL. Points on one line give fewer than
+// three corners.
+std::vector<Eigen::Vector2d> ConvexHull(std::span<const Eigen::Vector2d> points);
+
 // Polygons here are convex, closed and in the order of positive signed area. A polygon with fewer
 // than three corners is the empty set.
 
