@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "bags/decompress.h"
 
 #include <bzlib.h>
@@ -15,6 +16,7 @@
 #include "util/text.h"
 
 namespace hullslam {
+
 namespace {
 
 // The result of one call of a decompressor.

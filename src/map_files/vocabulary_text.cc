@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bow/vocabulary_builder.h"
-#include "bow/vocabulary_layout.h"
 #include "hullslam/util/error.h"
 #include "util/text.h"
 

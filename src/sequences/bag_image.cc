@@ -15,7 +15,6 @@
 
 #include "files/bytes.h"
 #include "hullslam/util/error.h"
-#include "images/eight_bits.h"
 #include "images/image_file.h"
 #include "images/rvl_depth.h"
 #include "util/text.h"

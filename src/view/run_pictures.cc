@@ -13,7 +13,7 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
-#include "images/jpeg_codec.h"
+#include "images/image_codecs.h"
 #include "sequences/frame_colour.h"
 #include "util/lists.h"
 

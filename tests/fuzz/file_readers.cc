@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bow/vocabulary_layout.h"
+#include "bow/vocabulary_builder.h"
 #include "files/npy_file.h"
 #include "files/read_file.h"
 #include "fuzz/fuzzed_input.h"

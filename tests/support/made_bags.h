@@ -14,10 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bags/cdr_writer.h"
 #include "bags/decompress.h"
-#include "bags/field_reader.h"
 #include "bags/mcap_bag.h"
+#include "bags/message_fields.h"
 #include "files/bytes.h"
 
 namespace hullslam {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "images/png_codec.h"
+#include "images/image_codecs.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bags/field_reader.h"
+
+#include "bags/message_fields.h"
 
 #include <fmt/format.h>
 
