@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "costs/defined_cost.h"
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/reprojection.h"
 #include "estimators/keypoint_precision.h"
 #include "frame/measure_point.h"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_result.h"

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/reprojection.h"
 #include "optim/made_points.h"
 #include "util/chi_square.h"

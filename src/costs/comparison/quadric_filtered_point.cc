@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/comparison/quadric_filtered_point.h"
-
 #include <Eigen/LU>
 #include <cmath>
 
 #include "costs/comparison/quadric_algebraic_point.h"
+#include "costs/residual_kind.h"
 #include "util/lists.h"
 
 namespace hullslam {

@@ -5,9 +5,31 @@
 
 #include <array>
 
+#include "hullslam/geometry/rigid3.h"
 #include "hullslam/geometry/sim3.h"
 
 namespace hullslam {
+
+// A Rigid3 as a parameter block: qx qy qz qw tx ty tz.
+using PoseBlock = std::array<double, 7>;
+PoseBlock ToBlock(const Rigid3& pose);
+Rigid3 FromBlock(const double* block);
+
+// The manifold of a PoseBlock. Plus is Retract with three numbers for the rotation, followed by
+// three for the translation.
+//
+// Costs on such a block write their derivative with respect to these six numbers into the first six
+// columns of the block's Jacobian, and zero into the seventh. PlusJacobian is [I; 0] to match. So
+// no residual has to compute a derivative with respect to a quaternion.
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+};
 
 // A Sim3 as a parameter block: qx qy qz qw tx ty tz scale.
 using SimilarityBlock = std::array<double, 8>;

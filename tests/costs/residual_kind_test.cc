@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/make_object_cost.h"
+
+#include "costs/residual_kind.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "costs/object_cost_laws.h"
 
 namespace hullslam {
+
 namespace {
 
 class MakeObjectCostTest : public ::testing::Test {
@@ -121,4 +123,5 @@ TEST_F(MakeObjectCostTest, IsNullForAnEmptyDetection) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

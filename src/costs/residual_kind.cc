@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/make_object_cost.h"
-
-#include <utility>
 
 #include "costs/residual_kind.h"
+
+#include <utility>
 
 namespace hullslam {
 
