@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/depth_registration.h"
-#include "eval/mask_registration.h"
+#include "eval/image_registration.h"
 #include "hullslam/util/error.h"
 #include "util/text.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "eval/true_object.h"
+#include "eval/object_groundtruth.h"
 #include "hullslam/geometry/sim3.h"
 #include "hullslam/objects/object_changes.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "eval/object_groundtruth.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
+
 namespace {
 
 Eigen::Vector3d LongestFirst(Eigen::Vector3d axes) {

@@ -1,16 +1,127 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eval/depth_registration.h"
+
+#include "eval/image_registration.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "hullslam/util/check.h"
 
 namespace hullslam {
+
 namespace {
+
+// Two vertical edges of the given heights, far from each other and from the borders.
+cv::Mat TwoEdges(int first, int second) {
+  cv::Mat grey(40, 60, CV_8UC1, cv::Scalar(0));
+  grey.colRange(20, 60).setTo(first);
+  grey.colRange(40, 60).setTo(first + second);
+  return grey;
+}
+
+TEST(RelativeGradient, HasTheMeanOne) {
+  const cv::Mat gradient = RelativeGradient(TwoEdges(10, 30));
+  EXPECT_EQ(gradient.type(), CV_32FC1);
+  EXPECT_NEAR(cv::mean(gradient)[0], 1.0, 1e-5);
+  EXPECT_NEAR(gradient.at<float>(20, 40), 3.0f * gradient.at<float>(20, 20), 1e-4f);
+  EXPECT_EQ(gradient.at<float>(20, 10), 0.0f);
+  cv::Mat turned = RelativeGradient(TwoEdges(10, 30).t());
+  EXPECT_LT(cv::norm(turned.t(), gradient, cv::NORM_INF), 1e-5) << "both directions count";
+}
+
+// Sobel's filter multiplies the height of an edge by 4, so those above 50 are limited.
+TEST(RelativeGradient, StrongEdgesAreLimited) {
+  const cv::Mat gradient = RelativeGradient(TwoEdges(60, 180));
+  EXPECT_FLOAT_EQ(gradient.at<float>(20, 20), gradient.at<float>(20, 40));
+  const cv::Mat below = RelativeGradient(TwoEdges(40, 180));
+  EXPECT_NEAR(below.at<float>(20, 40), 1.25f * below.at<float>(20, 20), 1e-4f);
+}
+
+TEST(RelativeGradient, IsZeroWithoutEdges) {
+  EXPECT_EQ(cv::countNonZero(RelativeGradient(cv::Mat(9, 9, CV_8UC1, cv::Scalar(7)))), 0);
+}
+
+// A bright rectangle on noise, away from all axes of symmetry.
+constexpr int kX = 20, kY = 10, kWidth = 50, kHeight = 30;
+
+cv::Mat MadeImage() {
+  cv::Mat image(120, 160, CV_8UC1);
+  cv::theRNG().state = 5;
+  cv::randu(image, 0, 20);
+  image(cv::Rect(kX, kY, kWidth, kHeight)) += 150;
+  return image;
+}
+
+// The mask of the rectangle in the image that is turned: `turn` is done to a picture of it.
+InstanceMask MadeMask(int orientation) {
+  cv::Mat mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  mask(cv::Rect(kX, kY, kWidth, kHeight)).setTo(255);
+  if (orientation == 6) {
+    cv::rotate(mask, mask, cv::ROTATE_90_CLOCKWISE);
+  } else if (orientation == 8) {
+    cv::rotate(mask, mask, cv::ROTATE_90_COUNTERCLOCKWISE);
+  } else if (orientation == 3) {
+    cv::rotate(mask, mask, cv::ROTATE_180);
+  } else if (orientation == 2) {
+    cv::flip(mask, mask, 1);
+  } else if (orientation == 4) {
+    cv::flip(mask, mask, 0);
+  } else if (orientation == 5) {
+    mask = mask.t();
+  } else if (orientation == 7) {
+    cv::rotate(cv::Mat(mask.t()), mask, cv::ROTATE_180);
+  }
+  const cv::Rect box = cv::boundingRect(mask);
+  // Formats with shares of the size are scaled to the size of the camera.
+  const Eigen::Vector2d scale(160.0 / mask.cols, 120.0 / mask.rows);
+  InstanceMask made;
+  made.outlines.emplace_back();
+  for (const auto& [x, y] : {std::pair(box.x, box.y), std::pair(box.br().x, box.y),
+                             std::pair(box.br().x, box.br().y), std::pair(box.x, box.br().y)}) {
+    made.outlines.front().emplace_back(x * scale.x() - 0.5, y * scale.y() - 0.5);
+  }
+  return made;
+}
+
+TEST(MaskRegistrationTest, TheOrientationOfTheMasksHasTheHighestContrast) {
+  const cv::Mat image = MadeImage();
+  for (int truth = 1; truth <= 8; ++truth) {
+    MaskRegistration registration;
+    const std::vector<InstanceMask> masks = {MadeMask(truth)};
+    registration.Add(image, masks);
+    EXPECT_GT(registration.points(), 130U);
+    for (int orientation = 1; orientation <= 8; ++orientation) {
+      if (orientation == truth) {
+        EXPECT_GT(registration.Contrast(orientation), 3.0) << truth;
+      } else {
+        EXPECT_LT(registration.Contrast(orientation), 2.0) << truth << ' ' << orientation;
+      }
+    }
+  }
+}
+
+TEST(MaskRegistrationTest, OnlyContoursCount) {
+  InstanceMask box = MadeMask(1);
+  box.shape = MaskShape::kBox;
+  MaskRegistration registration;
+  registration.Add(MadeImage(), std::vector<InstanceMask>{box, InstanceMask{}});
+  EXPECT_EQ(registration.points(), 0U);
+  EXPECT_THROW(registration.Contrast(1), CheckError);
+}
+
+TEST(MaskRegistrationTest, EachContourCountsWithItsLength) {
+  MaskRegistration registration;
+  std::vector<InstanceMask> masks = {MadeMask(1), MadeMask(1)};
+  masks[1].outlines.push_back(masks[1].outlines.front());  // only the first is the outer border
+  registration.Add(MadeImage(), masks);
+  EXPECT_EQ(registration.points(), 2U * 2U * (kWidth + kHeight));
+  EXPECT_THROW(registration.Contrast(0), CheckError);
+  EXPECT_THROW(registration.Contrast(9), CheckError);
+}
 
 // Textured boxes, 1 m away, before a textured wall, 2 m away.
 struct Scene {
@@ -163,4 +274,5 @@ TEST(DepthRegistration, ASlopeIsNoStep) {
 }
 
 }  // namespace
+
 }  // namespace hullslam
