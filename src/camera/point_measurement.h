@@ -46,7 +46,7 @@ struct PointMeasurement {
   // Inverse standard deviations of the three numbers, 1 / px; 0 for an unknown disparity.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
   // The first residual is that of u - coupling * disparity. 0 unless the errors of u and disparity
-  // are correlated (camera/point_measurement.h).
+  // are correlated (MeasureRightColumn).
   double coupling = 0.0;
   // The first residual is that of u - shear * v. 0 unless the errors of u and v are correlated, as
   // those of a fisheye lens are after undistortion.

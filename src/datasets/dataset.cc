@@ -9,7 +9,7 @@
 
 #include "datasets/row_tools.h"
 #include "datasets/rows.h"
-#include "frame/pair_check.h"
+#include "frame/input_check.h"
 #include "hullslam/util/error.h"
 #include "sequences/resized_images.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "frame/wide_sensor.h"
+#include "frame/measure_point.h"
 #include "map/correction.h"
 #include "map/islands.h"
 #include "mapping/contradicted_landmarks.h"

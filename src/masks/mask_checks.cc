@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "frame/detection/sort_outlines.h"
+#include "frame/detection/mask_outline.h"
 #include "util/text.h"
 
 namespace hullslam {

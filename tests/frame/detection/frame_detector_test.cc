@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/detection/right_lines.h"
+
+#include "frame/detection/frame_detector.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <vector>
 
 namespace hullslam {
+
 namespace {
 
 constexpr PinholeCamera kCameraOfPair{
@@ -75,4 +77,5 @@ TEST(RightLines, AreOneSidedWhereThoseOfTheLeftImageAre) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

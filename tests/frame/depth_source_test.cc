@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/keypoint_depth.h"
+
+#include "frame/depth_source.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 namespace hullslam {
+
 namespace {
 
 constexpr double kBf = 40.0;
@@ -112,4 +114,5 @@ TEST(KeypointDepth, BordersHaveADepthWithTheErrorModelOfOrbSlam2) {
 }
 
 }  // namespace
+
 }  // namespace hullslam
