@@ -10,9 +10,9 @@
 
 #include "loop/drift_budget.h"
 #include "loop/island_join.h"
+#include "loop/loop_candidates.h"
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
-#include "loop/return_to_place.h"
 #include "map/correction.h"
 #include "map/covisibility.h"
 #include "map/islands.h"

@@ -8,6 +8,17 @@
 
 namespace hullslam {
 
+void SetParent(Map& map, KeyframeId child, KeyframeId parent);
+
+// Makes `keyframe` the root of its tree: the edges on the path to the former root change their
+// direction.
+void MakeRoot(Map& map, KeyframeId keyframe);
+
+// Removes `keyframe` from the tree. Each of its children gets a new parent, chosen from the parent
+// of `keyframe` and the siblings that already have a new parent: the one that shares most landmarks
+// with the child. If none shares a landmark, it is the parent of `keyframe`.
+void DetachFromTree(Map& map, KeyframeId keyframe);
+
 // Counts the landmarks that `keyframe` shares with others and updates its edges at both ends. An
 // edge needs 15 shared landmarks. If no other keyframe shares that many, the one that shares most
 // gets an edge. A keyframe without parent becomes the child of the older keyframe that it shares

@@ -6,7 +6,6 @@
 
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,6 @@
 #include "map/covisibility.h"
 #include "map/islands.h"
 #include "map/landmark_edits.h"
-#include "map/spanning_tree.h"
 #include "mapping/sensor_rules.h"
 
 namespace hullslam {

@@ -11,7 +11,6 @@
 #include "frame/measure_point.h"
 #include "map/correction.h"
 #include "map/islands.h"
-#include "mapping/contradicted_landmarks.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_label_png.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -22,6 +20,7 @@
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "masks/mask_checks.h"
+#include "masks/mask_format.h"
 #include "masks/mask_text.h"
 #include "util/text.h"
 

@@ -12,7 +12,7 @@
 #include "frame/detection/frame_detector.h"
 #include "frame/input_check.h"
 #include "hullslam/util/check.h"
-#include "map/spanning_tree.h"
+#include "map/covisibility.h"
 #include "objects/object_mapper.h"
 #include "system/count_objects.h"
 #include "system/make_sensor.h"

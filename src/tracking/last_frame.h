@@ -7,8 +7,8 @@
 
 #include "frame/rolling_shutter.h"
 #include "hullslam/frame/frame.h"
+#include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/relative_pose.h"
 
 namespace hullslam {
 

@@ -7,7 +7,6 @@
 #include "map/correction.h"
 #include "map/covisibility.h"
 #include "map/made_correction.h"
-#include "map/spanning_tree.h"
 #include "support/ring_world.h"
 
 namespace hullslam {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -12,7 +12,6 @@
 #include "map/covisibility.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 #include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "map/covisibility.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

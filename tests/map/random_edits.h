@@ -7,7 +7,6 @@
 #include "hullslam/map/map.h"
 #include "map/covisibility.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

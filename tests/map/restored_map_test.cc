@@ -14,7 +14,6 @@
 #include "map/islands.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

@@ -9,7 +9,6 @@
 
 #include "map/covisibility.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
+#include "map/covisibility.h"
 #include "map/islands.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

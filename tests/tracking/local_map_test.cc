@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/spanning_tree.h"
+#include "map/covisibility.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/spanning_tree.h"
+#include "map/covisibility.h"
 #include "objects/constraint/raw_lines.h"
 #include "objects/made_objects.h"
 #include "support/fisheye_camera.h"
