@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "map/islands.h"
-#include "optim/island_adjustment.h"
+#include "optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {

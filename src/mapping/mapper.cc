@@ -17,9 +17,8 @@
 #include "mapping/landmark_fusion.h"
 #include "mapping/late_detections.h"
 #include "mapping/old_keyframes.h"
-#include "objects/known_sizes.h"
+#include "objects/object_extents.h"
 #include "optim/bundle_adjustment.h"
-#include "optim/island_adjustment.h"
 
 namespace hullslam {
 namespace {

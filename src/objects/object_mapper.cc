@@ -16,7 +16,6 @@
 #include "objects/association.h"
 #include "objects/constraint/misfit.h"
 #include "objects/constraint/point_statistics.h"
-#include "objects/contradicted_object.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/refinement.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "optim/bundle_adjustment.h"
 
 #include <ceres/loss_function.h>
@@ -8,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "costs/defined_cost.h"
 #include "costs/manifolds.h"
@@ -25,6 +27,7 @@
 #include "util/chi_square.h"
 
 namespace hullslam {
+
 namespace {
 
 using internal::Supervision;
@@ -343,6 +346,16 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     KeepScale(map, window.fixed.front(), result);
   }
   return result;
+}
+
+IslandAdjustment AdjustIsland(const Map& map, IslandId island, const Sensor& sensor,
+                              const ObjectOptions& options, const Cancellation* cancellation,
+                              const ProgressCallback& on_progress) {
+  BundleWindow window = GlobalWindow(map, island, ObjectsToAdjust(options));
+  BundleResult result =
+      AdjustBundle(map, sensor, window, BundleOptions{.objects = options.bundle}.ForWholeMap(),
+                   cancellation, on_progress);
+  return {.result = std::move(result), .objects = std::move(window.objects)};
 }
 
 }  // namespace hullslam

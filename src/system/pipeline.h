@@ -11,7 +11,7 @@
 #include "hullslam/objects/object_changes.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
-#include "objects/rejection.h"
+#include "objects/validity.h"
 #include "system/pipeline_start.h"
 
 namespace hullslam {

@@ -15,7 +15,7 @@
 #include "frame/frame_builder.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "objects/known_sizes.h"
+#include "objects/object_extents.h"
 #include "system/compose_trajectory.h"
 #include "system/count_objects.h"
 #include "system/finish_run.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "map/covisibility.h"
-#include "objects/constraint/raw_lines.h"
+#include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
 #include "support/fisheye_camera.h"
 #include "support/pose_distance.h"

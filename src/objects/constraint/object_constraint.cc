@@ -14,8 +14,8 @@
 #include "costs/pixel_error.h"
 #include "costs/quadric_prior.h"
 #include "costs/residual_kind.h"
+#include "objects/constraint/misfit.h"
 #include "objects/constraint/point_statistics.h"
-#include "objects/constraint/raw_lines.h"
 #include "util/lists.h"
 
 namespace hullslam {
