@@ -14,7 +14,7 @@
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 #include "view/point_colours.h"
 
 namespace hullslam {

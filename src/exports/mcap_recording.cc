@@ -12,7 +12,7 @@
 #include "images/image_codecs.h"
 #include "images/image_file.h"
 #include "map/located_landmarks.h"
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 #include "system/make_sensor.h"
 #include "view/point_colours.h"
 #include "view/run_pictures.h"

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "results/ply_writer.h"
+#include "results/ply_file.h"
 #include "util/order_statistics.h"
 
 namespace hullslam {

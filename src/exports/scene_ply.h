@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// PLY files of PlyWriter (results/ply_writer.h).
+// PLY files of PlyWriter (results/ply_file.h).
 
 // Only the points.
 std::string FormatPointsPly(std::span<const ColouredPoint> points);

@@ -11,9 +11,8 @@
 #include "files/plausible.h"
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
-#include "results/json_pose.h"
+#include "results/json_text.h"
 #include "results/object_file.h"
-#include "results/object_file_version.h"
 #include "util/text.h"
 
 namespace hullslam {

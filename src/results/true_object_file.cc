@@ -5,7 +5,7 @@
 #include <string>
 
 #include "files/json_file.h"
-#include "results/json_pose.h"
+#include "results/json_text.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,6 @@
 #include "files/protobuf_reader.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "segmentation/onnx_graph.h"
 #include "util/text.h"
 
 namespace hullslam {

@@ -24,7 +24,7 @@
 #include "images/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/named_images.h"
-#include "sequences/stereo_loading.h"
+#include "sequences/stereo_pairing.h"
 
 namespace hullslam {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "settings/kalibr_camchain.h"
 
-#include "settings/yaml_lens.h"
 #include "settings/yaml_pose.h"
 
 namespace hullslam {

@@ -12,7 +12,6 @@
 #include "settings/basalt_calibration.h"
 #include "settings/calibration_file.h"
 #include "settings/kalibr_camchain.h"
-#include "settings/rotation_matrix.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
 #include "util/text.h"

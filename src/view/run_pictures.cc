@@ -14,7 +14,7 @@
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
 #include "images/image_codecs.h"
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 #include "util/lists.h"
 
 namespace hullslam {

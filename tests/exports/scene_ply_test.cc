@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "results/ply_points.h"
+#include "results/ply_file.h"
 #include "support/made_export.h"
 #include "support/temporary_folder.h"
 

@@ -30,15 +30,15 @@
 #include "masks/mask_classes.h"
 #include "results/finished_run.h"
 #include "results/object_file.h"
-#include "results/ply_points.h"
+#include "results/ply_file.h"
 #include "results/pose_file.h"
 #include "results/scene_file.h"
 #include "results/true_object_file.h"
+#include "segmentation/candidate.h"
 #include "segmentation/class_names.h"
 #include "segmentation/instance_outline.h"
 #include "segmentation/network_layout.h"
 #include "segmentation/onnx_file.h"
-#include "segmentation/suppress_overlaps.h"
 
 namespace hullslam {
 namespace {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/suppress_overlaps.h"
+
+#include "segmentation/candidate.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace hullslam {
+
 namespace {
 
 double Overlap(const Candidate& a, const Candidate& b) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/suppress_overlaps.h"
+
+#include "segmentation/candidate.h"
 
 #include <gtest/gtest.h>
 
 namespace hullslam {
+
 namespace {
 
 Candidate Box(double left, double right, double score, int class_number = 0) {
@@ -35,4 +37,5 @@ TEST(SuppressOverlaps, TenThousandDetectionsBecomeAsManyAsAnImageMayHave) {
 }
 
 }  // namespace
+
 }  // namespace hullslam
