@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/sequential_pipeline.h"
-
 #include <exception>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "system/finish_run.h"
 #include "system/grow_map.h"
 #include "system/loop_stages.h"
+#include "system/pipeline.h"
 #include "tracking/tracker.h"
 
 namespace hullslam {

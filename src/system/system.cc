@@ -22,8 +22,6 @@
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
-#include "system/sequential_pipeline.h"
-#include "system/threaded_pipeline.h"
 #include "tracking/remembered_frame.h"
 #include "util/task_runner.h"
 #include "util/text.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/threaded_pipeline.h"
-
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -15,6 +13,7 @@
 #include "system/grow_map.h"
 #include "system/loop_stages.h"
 #include "system/loop_threads.h"
+#include "system/pipeline.h"
 #include "tracking/tracker.h"
 #include "util/between_threads.h"
 #include "util/thread_priority.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/image_overlap.h"
+#include "tracking/last_frame.h"
 #include "util/order_statistics.h"
 
 namespace hullslam {

@@ -15,7 +15,7 @@
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
 #include "tracking/shutter_correction.h"
-#include "tracking/sources/pixel_pairs.h"
+#include "tracking/sources/pair_votes.h"
 #include "util/hash.h"
 #include "util/order_statistics.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/pipeline_start.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +11,7 @@
 #include "support/ring_world.h"
 #include "support/temporary_folder.h"
 #include "system/compose_trajectory.h"
-#include "system/sequential_pipeline.h"
-#include "system/threaded_pipeline.h"
+#include "system/pipeline.h"
 
 namespace hullslam {
 namespace {

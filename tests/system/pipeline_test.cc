@@ -14,8 +14,6 @@
 #include "map/islands.h"
 #include "system/pipeline_cases.h"
 #include "system/ring_path.h"
-#include "system/sequential_pipeline.h"
-#include "system/threaded_pipeline.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/local_map.h"
+
+#include "tracking/local_map_tracking.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "map/covisibility.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr size_t kKeypoints = 50;
@@ -157,4 +159,5 @@ TEST(LocalMap, TheLimitKeepsTheKeyframesThatShareMost) {
 }
 
 }  // namespace
+
 }  // namespace hullslam
