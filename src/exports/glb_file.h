@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "exports/export_model.h"
+#include "exports/export_input.h"
 
 namespace hullslam {
 

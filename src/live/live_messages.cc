@@ -11,7 +11,6 @@
 #include "util/lists.h"
 #include "util/text.h"
 #include "view/aligned_truth.h"
-#include "view/packed_array.h"
 #include "view/view_message.h"
 
 namespace hullslam {

@@ -3,14 +3,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scene/answer.h"
 #include "scene/scene.h"
+#include "view/view_model.h"
 
 namespace hullslam {
+
+// One picture of several answers (CV_8UC3, blue first): a row per answer with its rank, class, id
+// and score, and with the cut-outs of the object with the outline of its mask. An object without
+// cut-outs has a row without them.
+cv::Mat DrawAnswers(std::span<const Answer> answers, const ViewModel& model);
 
 // A query for objects: by one of a question, `like`, `vector`, and `label` with `within` or either.
 struct SceneQuery {

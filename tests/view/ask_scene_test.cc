@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "view/answer_sheet.h"
+
+#include "view/ask_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "support/made_view.h"
 
 namespace hullslam {
+
 namespace {
 
 // A blue cut-out of 40x20 px with a square outline.
@@ -50,4 +52,5 @@ TEST(DrawAnswers, ACutoutThatIsNoImageIsLeftOut) {
 }
 
 }  // namespace
+
 }  // namespace hullslam
