@@ -11,7 +11,7 @@
 
 #include "camera/point_measurement.h"
 #include "optim/robust.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 // The measurement of a point by a keypoint, with or without depth, and its error. A depth z is
 // converted to the disparity bf / z of a virtual stereo pair, because the disparity of a

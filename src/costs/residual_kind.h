@@ -72,17 +72,4 @@ std::unique_ptr<ceres::CostFunction> MakeObjectCost(
     std::span<const SilhouetteLine> lines, double sigma,
     std::optional<Ellipse> projected = std::nullopt);
 
-// `bhattacharyya`: one residual, the Bhattacharyya distance of the projected ellipse and the
-// measured one as Gaussians, without unit (DistributionCost with
-// DistributionDistance::kBhattacharyya; OA-SLAM and VOOM refine their quadrics with it). Other than
-// the Wasserstein distance it is a share of the size of the ellipses, so near and far objects have
-// the same weight.
-extern const ResidualKind kBhattacharyyaResidual;
-
-// `filtered_point` (QISO-SLAM, Wang et al. 2023): AlgebraicPointCost with those contour points that
-// pass the chi-square test of GateContour with the projected ellipse at the start of the
-// optimisation. If fewer than half of the points pass, this ellipse cannot judge the contour, and
-// all points are used.
-extern const ResidualKind kFilteredPointResidual;
-
 }  // namespace hullslam

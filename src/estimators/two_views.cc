@@ -14,8 +14,7 @@
 
 #include "estimators/epipolar_refinement.h"
 #include "geometry/triangulation.h"
-#include "util/chi_square.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

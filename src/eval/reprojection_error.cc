@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

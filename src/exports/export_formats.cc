@@ -9,10 +9,7 @@
 #include "exports/colmap_model.h"
 #include "exports/export_folder.h"
 #include "exports/export_images.h"
-#include "exports/g2o_graph.h"
-#include "exports/glb_file.h"
-#include "exports/pose_files.h"
-#include "exports/scene_ply.h"
+#include "exports/single_files.h"
 #include "files/staged_file.h"
 #include "util/text.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/glb_file.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "exports/single_files.h"
 #include "files/bytes.h"
 
 namespace hullslam {

@@ -11,7 +11,7 @@
 
 #include "features/extractor.h"
 #include "hullslam/util/error.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "frame/patch_fit.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

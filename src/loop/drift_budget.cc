@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "map/islands.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

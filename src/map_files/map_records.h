@@ -46,7 +46,7 @@ std::shared_ptr<const Frame> ReadFrame(const MapHeader& header, ByteReader& in);
 void WriteDetection(const Detection& detection, ByteWriter& out);
 Detection ReadDetection(size_t keypoints, ByteReader& in);
 
-// In map_words.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
+// In map_frame.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
 // of the vocabulary is checked in map/restored_map.h.
 void WriteWords(const Frame& frame, ByteWriter& out);
 void ReadWords(Frame& frame, ByteReader& in);

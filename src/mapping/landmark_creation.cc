@@ -13,7 +13,7 @@
 #include "map/landmark_edits.h"
 #include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include "geometry/polygon.h"
 #include "objects/resolved_observation.h"
 #include "objects/visibility.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "objects/constraint/misfit.h"
 #include "objects/resolved_observation.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -9,7 +9,7 @@
 #include "map/keyframe_order.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

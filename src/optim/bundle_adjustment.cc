@@ -24,7 +24,7 @@
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

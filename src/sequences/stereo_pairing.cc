@@ -14,7 +14,7 @@
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "sequences/image_list.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

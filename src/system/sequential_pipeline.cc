@@ -4,7 +4,7 @@
 
 #include "hullslam/util/check.h"
 #include "loop/loop_closer.h"
-#include "loop/whole_map_adjustment.h"
+#include "loop/loop_correction.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
 #include "system/grow_map.h"

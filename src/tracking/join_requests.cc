@@ -6,7 +6,7 @@
 
 #include "map/islands.h"
 #include "tracking/last_frame.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -12,8 +12,7 @@
 #include "map/islands.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
-#include "tracking/object_guide.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
 #include "util/id_set.h"
 

@@ -17,7 +17,7 @@
 #include "tracking/shutter_correction.h"
 #include "tracking/sources/pair_votes.h"
 #include "util/hash.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

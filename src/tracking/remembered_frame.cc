@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "objects/constraint/object_constraint.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
 #include "util/id_set.h"
 #include "util/lists.h"

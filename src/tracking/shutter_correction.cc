@@ -10,7 +10,7 @@
 
 #include "frame/rolling_shutter.h"
 #include "map/islands.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -10,7 +10,7 @@
 
 #include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/scene_ply.h"
-
 #include <gtest/gtest.h>
 
+#include "exports/single_files.h"
 #include "results/ply_file.h"
 #include "support/made_export.h"
 #include "support/temporary_folder.h"

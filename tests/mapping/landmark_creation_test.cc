@@ -13,7 +13,7 @@
 #include "map/invariants.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -18,7 +18,7 @@
 #include "costs/manifolds.h"
 #include "costs/reprojection.h"
 #include "optim/made_points.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam::internal {
 namespace {

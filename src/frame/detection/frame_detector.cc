@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "util/order_statistics.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -12,7 +12,7 @@
 #include "objects/arrangement.h"
 #include "objects/pose_hypotheses.h"
 #include "places/landmark_search.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
 #include "util/hash.h"
