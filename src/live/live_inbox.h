@@ -38,12 +38,12 @@ class TrackHistory {
 
 // The data of one frame. Large parts are shared, so handing it over takes microseconds.
 struct LiveFrame {
-  FrameReport report;
-  std::shared_ptr<const Map> map;  // null before the first keyframe
-  cv::Mat grey;                    // the image in raw pixels, CV_8UC1; may be empty
-  size_t number = 0;               // of the frame in the run, counted from 1
-  double build_ms = 0.0;           // time of finding features
-  double track_ms = 0.0;           // time of tracking, and in a sequential run of mapping
+  FrameReport report = {};
+  std::shared_ptr<const Map> map = {};  // null before the first keyframe
+  cv::Mat grey = {};                    // the image in raw pixels, CV_8UC1; may be empty
+  size_t number = 0;                    // of the frame in the run, counted from 1
+  double build_ms = 0.0;                // time of finding features
+  double track_ms = 0.0;                // time of tracking, and in a sequential run of mapping
 };
 
 // A stretch of frames without a pose that has ended.

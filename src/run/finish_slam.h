@@ -7,10 +7,10 @@
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/system.h"
+#include "live/live_output.h"
 #include "results/output_folder.h"
 #include "results/summarize_run.h"
 #include "run/dataset_arguments.h"
-#include "run/live_output.h"
 #include "run/mask_arguments.h"
 #include "run/run_arguments.h"
 

@@ -213,6 +213,19 @@ std::string AnswersJson(const Scene& scene, const std::vector<Answer>& answers) 
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+std::string AnswersText(const Scene& scene, const std::vector<Answer>& answers) {
+  std::string text =
+      fmt::format("{:>4} {:<16} {:>5} {:>23}  {}\n", "id", "class", "score", "centre", "why");
+  for (const Answer& answer : answers) {
+    const SceneObject& object = *scene.Find(answer.object);
+    const Eigen::Vector3d& center = object.ellipsoid.world_from_object.translation;
+    text +=
+        fmt::format("{:>4} {:<16} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f}  {}\n", answer.object.value,
+                    object.label, answer.score, center.x(), center.y(), center.z(), answer.reason);
+  }
+  return text;
+}
+
 void WriteAnswerPicture(const fs::path& run, const std::vector<Answer>& answers,
                         const fs::path& file) {
   const ViewModel model = ViewOfRun(run);

@@ -37,6 +37,7 @@ std::vector<Answer> AskScene(const Scene& scene, const std::filesystem::path& so
                              const SceneQuery& query);
 
 std::string AnswersJson(const Scene& scene, const std::vector<Answer>& answers);
+std::string AnswersText(const Scene& scene, const std::vector<Answer>& answers);  // a table
 // Draws the answers, each with its best views, into an image file (.jpg or .png), which appears
 // complete or not at all. Throws InputError if the images of the run are not found.
 void WriteAnswerPicture(const std::filesystem::path& run, const std::vector<Answer>& answers,

@@ -70,15 +70,6 @@ Json PackTimes(std::span<const double> timestamps, double start) {
   return PackArray(times);
 }
 
-std::vector<double> StampsOf(const Trajectory& poses) {
-  std::vector<double> timestamps;
-  timestamps.reserve(poses.size());
-  for (const StampedPose& pose : poses) {
-    timestamps.push_back(pose.timestamp);
-  }
-  return timestamps;
-}
-
 void Append(const Eigen::VectorXd& values, std::vector<float>& list) {
   for (const double value : values) {
     list.push_back(static_cast<float>(value));

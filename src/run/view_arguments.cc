@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/live_output.h"
+#include "run/view_arguments.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "hullslam/map_files/map_file.h"
-#include "hullslam/util/error.h"
-#include "live/live_view.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
@@ -42,16 +40,6 @@ fs::path LiveMapFile(const RunArguments& arguments) {
   fs::path file = (arguments.output / "").parent_path();
   file += "-live.map";
   return file;
-}
-
-std::string SaveLiveMap(const fs::path& file, const MapSettings& settings, const Map& map) {
-  try {
-    WriteMap(file, map, settings);
-  } catch (const InputError& error) {
-    return fmt::format("The map was not saved: {}", error.what());
-  }
-  return fmt::format("The map of {} is in {}", Counted(map.keyframes().size(), "keyframe"),
-                     file.string());
 }
 
 LiveRun DescribeRun(const RunArguments& arguments, const SystemOptions& options,
@@ -109,74 +97,21 @@ std::vector<std::string> CompleteViewOption(int argc, char** argv) {
   return words;
 }
 
-LiveOutput::LiveOutput(const RunArguments& arguments, const SystemOptions& options,
-                       const ImageSequence& sequence,
-                       const std::optional<Trajectory>& groundtruth) {
+LiveOutput OpenLiveOutput(const RunArguments& arguments, const SystemOptions& options,
+                          const ImageSequence& sequence,
+                          const std::optional<Trajectory>& groundtruth) {
   if (arguments.view_port < 0) {
-    return;
+    return LiveOutput();
   }
-  const auto save = [file = LiveMapFile(arguments), settings = MapSettingsOf(options)](
-                        const Map& map) { return SaveLiveMap(file, settings, map); };
-  const auto warn = [](const std::string& reason) {
-    PrintError("warning: the live view has ended: {}\n", reason);
-  };
-  view_ = std::make_unique<LiveView>(
-      ViewAddress{.address = arguments.view_address, .port = arguments.view_port},
-      DescribeRun(arguments, options, sequence, groundtruth),
-      LiveCommands{.save_map = save, .warn = warn});
-  PrintAddress(view_->url());
-}
-
-LiveOutput::~LiveOutput() = default;
-
-std::chrono::steady_clock::duration LiveOutput::BeforeFrame(FrameSource& frames, System& system,
-                                                            const std::function<void()>& on_pause) {
-  if (!view_) {
-    return {};
-  }
-  const auto waited = view_->PassGate(IsInterrupted, [&] {
-    on_pause();
-    frames.Pause();
-  });
-  frames.Resume();
-  const bool is_wanted = view_->IsLocalisationWanted();
-  const std::shared_ptr<const Map> map = system.map();
-  if (is_wanted != is_localising_ && map != nullptr && !map->keyframes().empty()) {
-    system.SetLocalizationOnly(is_wanted);
-    is_localising_ = is_wanted;
-  }
-  return waited;
-}
-
-void LiveOutput::NoteFrame(const FrameReport& report) {
-  if (view_) {
-    report_ = report;
-  }
-}
-
-void LiveOutput::AfterFrame(const LoadedFrame& frame, size_t number, double track_ms,
-                            const System& system) {
-  if (view_ && report_) {
-    view_->Show({.report = std::move(*report_),
-                 .map = system.map(),
-                 .grey = frame.grey,
-                 .number = number,
-                 .build_ms = frame.build_ms,
-                 .track_ms = track_ms});
-    report_.reset();
-  }
-}
-
-void LiveOutput::BeginFinishing() {
-  if (view_) {
-    view_->BeginFinishing();
-  }
-}
-
-void LiveOutput::End(std::shared_ptr<const Map> map, const nlohmann::json& summary) {
-  if (view_) {
-    view_->End(std::move(map), summary);
-  }
+  LiveOutput live({.address = {.address = arguments.view_address, .port = arguments.view_port},
+                   .run = DescribeRun(arguments, options, sequence, groundtruth),
+                   .map_file = LiveMapFile(arguments),
+                   .settings = MapSettingsOf(options),
+                   .warn = [](const std::string& reason) {
+                     PrintError("warning: the live view has ended: {}\n", reason);
+                   }});
+  PrintAddress(live.url());
+  return live;
 }
 
 void ServePage(const std::string& page, int port, const std::string& address) {
