@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
-#include "frame/detection/dynamic_mask.h"
+#include "frame/detection/mask_region.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"

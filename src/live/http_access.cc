@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "live/http_access.h"
 
 #include <arpa/inet.h>
@@ -11,6 +12,7 @@
 #include "util/text.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr std::string_view kScheme = "http://";

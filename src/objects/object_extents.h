@@ -23,7 +23,7 @@ struct ObjectExtents {
 };
 
 // Measures an object by the two-sided lines of its observations: each is the image of a plane that
-// touches it (objects/misfit.h). Lines near the border of the image are left out, because networks
+// touches it (misfit.h). Lines near the border of the image are left out, because networks
 // end masks some pixels before it. The axes of the quadric are not the sides of the object: the
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
 // For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are fitted to

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/finish_slam.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +13,7 @@
 #include "run/messages.h"
 #include "run/more_outputs.h"
 #include "run/program.h"
+#include "run/slam_run.h"
 
 namespace hullslam {
 namespace {

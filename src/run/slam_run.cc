@@ -17,7 +17,6 @@
 #include "masks/mask_all.h"
 #include "results/output_folder.h"
 #include "run/dataset_arguments.h"
-#include "run/finish_slam.h"
 #include "run/interrupt.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"

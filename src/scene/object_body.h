@@ -40,7 +40,7 @@ struct ObjectBody {
 Eigen::Quaterniond UprightFromWorld(const Eigen::Vector3d& up);
 
 // The body of an object with the given observations. The silhouettes measure how far the object
-// reaches beyond its ellipsoid in each direction (objects/misfit.h), so the body of a box is less
+// reaches beyond its ellipsoid in each direction (misfit.h), so the body of a box is less
 // round than its ellipsoid. In directions that no observation has measured, it is the ellipsoid.
 ObjectBody MeasureBody(ObjectId id, const Ellipsoid& ellipsoid, const PinholeCamera& camera,
                        std::span<const ResolvedObservation> observations,

@@ -17,7 +17,7 @@
 #include "sequences/euroc_states.h"
 #include "sequences/image_list.h"
 #include "sequences/stereo_pairing.h"
-#include "settings/kalibr_camchain.h"
+#include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
 

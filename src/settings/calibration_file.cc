@@ -10,7 +10,7 @@
 
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
-#include "settings/basalt_calibration.h"
+#include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
 #include "util/text.h"

@@ -8,8 +8,8 @@
 
 #include "camera/fit_depth.h"
 #include "frame/depth_source.h"
-#include "frame/detection/dynamic_mask.h"
 #include "frame/detection/frame_detector.h"
+#include "frame/detection/mask_region.h"
 #include "frame/input_check.h"
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "frame/detection/dynamic_mask.h"
+#include "frame/detection/mask_region.h"
 #include "frame/frame_builder.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"

@@ -24,7 +24,6 @@
 #include "images/image_file.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
-#include "map_files/map_parser.h"
 #include "map_files/map_records.h"
 #include "map_files/vocabulary_text.h"
 #include "masks/mask_classes.h"

@@ -25,7 +25,6 @@
 #include "map/islands.h"
 #include "map/random_edits.h"
 #include "map_files/made_map_file.h"
-#include "map_files/map_parser.h"
 #include "map_files/map_records.h"
 #include "support/expect_error.h"
 #include "support/file_size_limit.h"

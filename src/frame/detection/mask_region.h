@@ -4,10 +4,13 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 
@@ -35,5 +38,10 @@ class MaskRegion {
   cv::Mat pixels_;  // CV_8UC1, of the size of the box
   int area_ = 0;
 };
+
+// A mask (CV_8UC1) that is 255 at the pixels of the raw image that show things of these classes,
+// and in a small margin around them. Empty if there are no such things.
+cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
+                    cv::Size size);
 
 }  // namespace hullslam
