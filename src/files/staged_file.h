@@ -69,8 +69,6 @@ bool WriteAll(int descriptor, std::string_view content);
 void WriteSyncedFile(const std::filesystem::path& path, std::string_view content,
                      const std::filesystem::path& shown);
 
-class StagingFolder;
-
 // A file that is written piece by piece and then gets its path as a whole. Until then it is in a
 // temporary folder beside its path, and an earlier file at the path is unchanged. If the path is a
 // link, all this refers to the file that the link leads to; the link stays. What killed processes

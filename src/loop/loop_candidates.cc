@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "loop/loop_correction.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "places/similar_places.h"
 #include "util/id_set.h"
 

@@ -14,8 +14,8 @@
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
 #include "map/correction.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "objects/fusion.h"
 #include "optim/bundle_adjustment.h"
 #include "optim/pose_graph.h"

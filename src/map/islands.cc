@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <map>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/keyframe_order.h"
 
 namespace hullslam {

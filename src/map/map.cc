@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 
 namespace hullslam {
 namespace {

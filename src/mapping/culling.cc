@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "frame/depth_sight.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/keyframe_order.h"
 #include "map/landmark_projection.h"
 #include "mapping/sensor_rules.h"

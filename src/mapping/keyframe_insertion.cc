@@ -5,8 +5,8 @@
 #include <array>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "mapping/sensor_rules.h"
 

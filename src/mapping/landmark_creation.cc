@@ -9,7 +9,7 @@
 
 #include "frame/measure_point.h"
 #include "geometry/triangulation.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"

@@ -12,7 +12,7 @@
 #include "frame/detection/mask_region.h"
 #include "frame/input_check.h"
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "objects/object_mapper.h"
 #include "system/count_objects.h"
 #include "system/make_sensor.h"

@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "tracking/frame_objects.h"

@@ -11,9 +11,9 @@
 #include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "map/correction.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 namespace hullslam {

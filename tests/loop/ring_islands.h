@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "map/correction.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_correction.h"
 #include "support/ring_world.h"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 

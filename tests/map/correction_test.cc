@@ -16,9 +16,9 @@
 
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "map/made_correction.h"

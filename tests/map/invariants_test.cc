@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "support/made_vocabulary.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 namespace hullslam {

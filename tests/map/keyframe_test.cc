@@ -6,7 +6,7 @@
 
 #include "hullslam/map/map.h"
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "support/made_vocabulary.h"

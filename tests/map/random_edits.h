@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hullslam/map/map.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "support/random_geometry.h"
 

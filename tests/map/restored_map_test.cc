@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "support/expect_error.h"

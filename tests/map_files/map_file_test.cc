@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "files/read_file.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/random_edits.h"
 #include "map_files/made_map_file.h"
 #include "map_files/map_records.h"

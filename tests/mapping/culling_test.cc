@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "map/made_map.h"
 #include "support/synthetic_world.h"

@@ -9,8 +9,8 @@
 #include <map>
 #include <numbers>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
 #include "util/statistics.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"

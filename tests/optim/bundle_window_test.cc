@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 namespace hullslam {

@@ -18,7 +18,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/map.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "util/hash.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 
 namespace hullslam {
 

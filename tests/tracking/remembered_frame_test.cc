@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
 #include "support/fisheye_camera.h"

@@ -5,8 +5,8 @@
 
 #include "estimators/absolute_pose.h"
 #include "frame/measure_point.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "objects/arrangement.h"

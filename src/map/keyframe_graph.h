@@ -8,6 +8,9 @@
 
 namespace hullslam {
 
+// The two graphs of the keyframes of an island: the spanning tree and covisibility.
+
+// Makes `parent` the parent of `child` in the spanning tree, in place of its former one.
 void SetParent(Map& map, KeyframeId child, KeyframeId parent);
 
 // Makes `keyframe` the root of its tree: the edges on the path to the former root change their

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 
 #include <gtest/gtest.h>
 
