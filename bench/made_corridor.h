@@ -15,7 +15,7 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

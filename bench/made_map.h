@@ -14,7 +14,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/map.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 
 namespace hullslam {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/epipolar.h"
+#include "geometry/triangulation.h"
 #include "matching/by_descriptor.h"
 #include "matching/by_projection.h"
 #include "matching/for_triangulation.h"

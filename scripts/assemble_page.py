@@ -97,7 +97,7 @@ def as_cpp(page):
     mark = "hullslam_page"
     chunks = [page[at:at + CHUNK] for at in range(0, len(page), CHUNK)]
     strings = "\n".join(f'R"{mark}({chunk}){mark}"' for chunk in chunks)
-    return ("// Made by scripts/assemble_page.py.\n#include \"view/page_template.h\"\n\n"
+    return ("// Made by scripts/assemble_page.py.\n#include \"view/report_page.h\"\n\n"
             f"namespace hullslam {{\n\nstd::string_view PageTemplate() {{\n  return {strings};\n}}\n\n"
             "}  // namespace hullslam\n")
 

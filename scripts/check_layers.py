@@ -71,12 +71,12 @@ WORDS = (
          {"datasets", "sequences"}, {"eval", "exports", "results", "run", "settings"}),
 )
 
-# These numbers may only become smaller. The goals of ALL_FILES and SCRIPTS are 900 and 6500.
-MOST_FILES, MOST_LINES, ALL_FILES, SCRIPTS = 40, 900, 1085, 8230
+# These numbers may only become smaller. The goal of SCRIPTS is 6500.
+MOST_FILES, MOST_LINES, ALL_FILES, SCRIPTS = 40, 900, 900, 8230
 CORE = {module for module, level in LEVELS.items() if level <= LEVELS["system"]} - {"files", "images", "bags"}
-PARTS = {  # name: (modules, lines of src; the goals are 35000 and 4500)
-    "core": (CORE, 37345),
-    "run": (PROGRAM_SIDE, 5212),
+PARTS = {  # name: (modules, lines of src; the goal of the core is 35000)
+    "core": (CORE, 36500),
+    "run": (PROGRAM_SIDE, 4500),
 }
 
 KEPT_PRIVATE = re.compile(

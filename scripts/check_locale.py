@@ -10,7 +10,7 @@ strtod reads "0.5" as 0. Fails if a C++ file of the library, the programs, the t
 3. prints a floating-point number with a function like printf (the programs in Examples may: nothing sets
    their locale).
 
-std::from_chars, ParseFinite(), fmt and util/ascii.h do the same without a locale. Comments, and files
+std::from_chars, ParseFinite(), fmt and util/text.h do the same without a locale. Comments, and files
 in folders called tests, are not checked.
 """
 

@@ -3,8 +3,8 @@
 """Checks that the tests mirror the headers; fails if one of these rules is broken.
 
 1. Every public header include/hullslam/<module>/<file>.h has a test tests/<module>/<file>_test.cc.
-2. Every tests/<module>/<file>_test.cc is named after such a header or after a private header
-   src/<module>/<file>.h, and contains at least one test.
+2. Every tests/<module>/<file>_test.cc is named after such a header or after a private file
+   src/<module>/<file>.h or .cc, and contains at least one test.
 
 The folders integration, support, consumer, fuzz and scripts of tests/ are not checked.
 """
@@ -37,8 +37,8 @@ def stray_tests(root):
         header = inside.with_name(inside.name[:-len("_test.cc")] + ".h")
         public = pathlib.Path("include/hullslam") / header
         private = pathlib.Path("src") / header
-        if not (root / public).exists() and not (root / private).exists():
-            yield f"{test.relative_to(root)}: neither {public} nor {private} exists"
+        if not any((root / path).exists() for path in (public, private, private.with_suffix(".cc"))):
+            yield f"{test.relative_to(root)}: neither {public} nor {private} nor its .cc exists"
         if not TEST.search(test.read_text(encoding="utf-8")):
             yield f"{test.relative_to(root)}: contains no test"
 

@@ -9,7 +9,7 @@
 #include "bags/mcap_bag.h"
 #include "bags/ros1_bag.h"
 #include "bags/sqlite_bag.h"
-#include "files/natural_order.h"
+#include "files/paths.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

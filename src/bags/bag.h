@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "bags/field_reader.h"
+#include "bags/message_fields.h"
 #include "files/random_access_file.h"
 
 namespace hullslam {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "bags/decompress.h"
 
 #include <bzlib.h>
@@ -12,9 +13,10 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
+
 namespace {
 
 // The result of one call of a decompressor.

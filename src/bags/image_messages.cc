@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <span>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bags/bag.h"
-#include "bags/field_reader.h"
+#include "bags/message_fields.h"
 
 namespace hullslam {
 

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "bags/bag.h"
-#include "bags/chunk_cache.h"
 #include "bags/decompress.h"
 #include "files/random_access_file.h"
 

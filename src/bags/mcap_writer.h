@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bags/mcap_bag.h"
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 #include "files/staged_file.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "bags/read_only_vfs.h"
-#include "files/canonical_path.h"
+#include "files/paths.h"
 #include "files/random_access_file.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -9,8 +9,8 @@
 #include "bow/binary_clustering.h"
 #include "bow/vocabulary_builder.h"
 #include "hullslam/util/check.h"
-#include "util/random_seed.h"
-#include "util/sort_unique.h"
+#include "util/hash.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

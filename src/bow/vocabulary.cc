@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "bow/vocabulary_layout.h"
+#include "bow/vocabulary_builder.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "util/function_clones.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "optim/robust.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

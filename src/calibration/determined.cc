@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

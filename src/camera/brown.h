@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "camera/lens_point.h"
+#include "camera/wide_lens.h"
 #include "hullslam/camera/pinhole.h"
 
 namespace hullslam {

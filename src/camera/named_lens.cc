@@ -5,7 +5,7 @@
 #include <array>
 
 #include "camera/wide_lens.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

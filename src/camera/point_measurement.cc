@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "camera/point_measurement.h"
 
 #include <cmath>
-
-#include "camera/right_column.h"
+#include <numbers>
 
 namespace hullslam {
 
@@ -30,6 +30,20 @@ void PointMeasurement::TakeLens(const Eigen::Matrix2d& raw_by_undistorted) {
   shear = -uv / u;
   inverse_sigma.x() *= u;
   inverse_sigma.y() *= std::sqrt(square(1, 1) - uv * uv);
+}
+
+PointMeasurement MeasureRightColumn(const Eigen::Vector2d& pixel, double sigma,
+                                    std::optional<double> disparity) {
+  constexpr double kRoot2 = std::numbers::sqrt2;
+  PointMeasurement measurement;
+  measurement.measured << pixel, disparity.value_or(0.0);
+  if (disparity) {
+    measurement.inverse_sigma << kRoot2 / sigma, 1.0 / sigma, 1.0 / (kRoot2 * sigma);
+    measurement.coupling = 0.5;
+  } else {
+    measurement.inverse_sigma << 1.0 / sigma, 1.0 / sigma, 0.0;
+  }
+  return measurement;
 }
 
 }  // namespace hullslam

@@ -8,7 +8,7 @@
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 // The measurement of a point by a keypoint, with or without depth, and its error. A depth z is
 // converted to the disparity bf / z of a virtual stereo pair, because the disparity of a
@@ -46,7 +46,7 @@ struct PointMeasurement {
   // Inverse standard deviations of the three numbers, 1 / px; 0 for an unknown disparity.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
   // The first residual is that of u - coupling * disparity. 0 unless the errors of u and disparity
-  // are correlated (camera/right_column.h).
+  // are correlated (MeasureRightColumn).
   double coupling = 0.0;
   // The first residual is that of u - shear * v. 0 unless the errors of u and v are correlated, as
   // those of a fisheye lens are after undistortion.
@@ -182,5 +182,22 @@ inline bool IsInlier(const PinholeCamera& camera, const PointMeasurement& measur
                      const Eigen::Vector3d& point) {
   return PointChi2(camera, measurement, point) <= OutlierBound(measurement);
 }
+
+// The depth error model `right_column` (Mur-Artal and Tardos 2017, section III.A): a keypoint with
+// depth stands for the three columns and rows (u, v, u_r) of a stereo camera, u_r = u - disparity,
+// whose errors are independent and have the same `sigma` (px), which grows with the level of the
+// keypoint. So the error of u is part of the error of the depth. With e = du, d = d disparity,
+//   e^2 + (e - d)^2 = 2 (e - d / 2)^2 + d^2 / 2,
+// so the squared norm of PointResidual is that of the three errors over sigma if the residual of u
+// is that of u - disparity / 2 with the sigma sigma / sqrt(2), and that of the disparity has the
+// sigma sqrt(2) sigma. Without disparity, only u and v count.
+PointMeasurement MeasureRightColumn(const Eigen::Vector2d& pixel, double sigma,
+                                    std::optional<double> disparity);
+
+// A landmark found in the image.
+struct PoseObservation {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, world frame
+  PointMeasurement measurement;
+};
 
 }  // namespace hullslam

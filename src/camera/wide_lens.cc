@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "camera/wide_lens.h"
 
 #include <algorithm>
@@ -8,9 +9,10 @@
 #include <numbers>
 #include <string>
 
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
+
 namespace {
 
 // Where a lens has no image of a ray: outside of any image.

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "camera/lens_point.h"
 #include "hullslam/camera/pinhole.h"
 
 namespace hullslam {
+
+// A distorted point of the plane z = 1, and its derivative by the undistorted point.
+struct LensPoint {
+  Eigen::Vector2d point;
+  Eigen::Matrix2d jacobian;
+};
 
 // Lenses that see more than half of the space in front of them. In all of them the image of a ray
 // is at a radius that depends only on its angle from the axis. A further one is a

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam {
 

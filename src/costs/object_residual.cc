@@ -7,10 +7,8 @@
 
 #include "costs/comparison/quadric_algebraic_plane.h"
 #include "costs/comparison/quadric_algebraic_point.h"
-#include "costs/comparison/quadric_bhattacharyya.h"
 #include "costs/comparison/quadric_box_bounds.h"
 #include "costs/comparison/quadric_distribution.h"
-#include "costs/comparison/quadric_filtered_point.h"
 #include "costs/comparison/quadric_overlap.h"
 #include "costs/comparison/quadric_relative_plane.h"
 #include "costs/quadric_tangent.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "costs/ellipse_projection.h"
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/residual_kind.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "camera/point_measurement.h"
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam {
 

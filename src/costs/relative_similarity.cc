@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "costs/similarity_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam {
 namespace {

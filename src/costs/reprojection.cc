@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam {
 

@@ -9,7 +9,7 @@
 
 #include "datasets/row_tools.h"
 #include "datasets/rows.h"
-#include "frame/pair_check.h"
+#include "frame/input_check.h"
 #include "hullslam/util/error.h"
 #include "sequences/resized_images.h"
 
@@ -105,6 +105,24 @@ std::vector<DatasetOption> AllDatasetOptions() {
   return all;
 }
 
+std::vector<DatasetOption> OptionsOfImages() {
+  std::vector<DatasetOption> options = AllDatasetOptions();
+  std::erase_if(options, [](const DatasetOption& option) {
+    const std::string_view key = option.key;
+    return key != "image_topic" && key != "times" && key != "side_by_side";
+  });
+  return options;
+}
+
+DatasetHelp HelpOfAnyDataset() {
+  return {.sequence =
+              "what a SLAM program reads: a sequence of TUM, ICL-NUIM, EuRoC or KITTI, stereo "
+              "pairs, a recording of ROS, a video or a folder of images",
+          .settings = "default: those of the sequence; a video or a folder of images has none",
+          .associations = "stamp rgb stamp depth",
+          .groundtruth = "default: that of the sequence"};
+}
+
 const Dataset& DatasetOfProgram(std::string_view program, SensorKind sensor) {
   for (const Dataset& dataset : Datasets()) {
     if (program == dataset.program && Has(dataset, sensor)) {
@@ -158,7 +176,10 @@ FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor)
 }
 
 FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor,
-                         const DatasetChoices& choices) {
+                         const DatasetChoices& choices, const fs::path& associations) {
+  if (!sensor && !associations.empty()) {
+    sensor = SensorKind::kRgbd;
+  }
   if (!sensor && choices.contains("side_by_side")) {
     sensor = SensorKind::kStereo;
   }
@@ -172,6 +193,13 @@ FoundDataset FindDataset(const fs::path& path, std::optional<SensorKind> sensor,
     }
   }
   return found;
+}
+
+OpenedDataset OpenFoundDataset(const std::optional<SensorKind>& sensor, DatasetRequest request) {
+  const FoundDataset found =
+      FindDataset(request.path, sensor, request.choices, request.associations);
+  request.sensor = found.sensor;
+  return OpenDataset(*found.dataset, request);
 }
 
 OpenedDataset OpenDataset(const Dataset& dataset, const DatasetRequest& request) {

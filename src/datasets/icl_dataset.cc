@@ -10,7 +10,7 @@
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

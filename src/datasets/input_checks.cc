@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/depth_registration.h"
-#include "eval/mask_registration.h"
+#include "eval/image_registration.h"
 #include "hullslam/util/error.h"
-#include "util/split_names.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/stereo_settings.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

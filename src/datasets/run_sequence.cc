@@ -8,7 +8,7 @@
 #include "hullslam/datasets/dataset.h"
 #include "hullslam/util/error.h"
 #include "sequences/resized_images.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

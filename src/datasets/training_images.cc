@@ -9,7 +9,7 @@
 #include "features/extractor.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

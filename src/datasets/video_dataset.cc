@@ -10,7 +10,7 @@
 #include "datasets/rows.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/util/error.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

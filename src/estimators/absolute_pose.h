@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/pose_observation.h"
+#include "camera/point_measurement.h"
 #include "estimators/ransac.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"

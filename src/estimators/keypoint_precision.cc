@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam::internal {
 namespace {

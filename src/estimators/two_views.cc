@@ -14,9 +14,7 @@
 
 #include "estimators/epipolar_refinement.h"
 #include "geometry/triangulation.h"
-#include "util/chi_square.h"
-#include "util/median.h"
-#include "util/reached_by.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eval/change_groundtruth.h"
-
 #include <optional>
 #include <vector>
+
+#include "eval/object_groundtruth.h"
 
 namespace hullslam {
 namespace {

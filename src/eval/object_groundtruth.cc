@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "eval/object_groundtruth.h"
 
 #include <algorithm>
@@ -6,11 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
+
 namespace {
 
 Eigen::Vector3d LongestFirst(Eigen::Vector3d axes) {

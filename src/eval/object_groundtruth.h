@@ -4,17 +4,44 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "eval/true_object.h"
+#include "hullslam/geometry/rigid3.h"
 #include "hullslam/geometry/sim3.h"
+#include "hullslam/objects/object_changes.h"
 #include "report/object_results.h"
 
 namespace hullslam {
+
+// The change of an object between two visits of a synthetic scene.
+enum class TrueObjectStatus { kUnchanged, kMoved, kNew };
+
+// A true object of a synthetic sequence (docs/synthetic.md).
+struct TrueObject {
+  uint32_t id = 0;  // the same in all visits of a scene
+  std::string label;
+  std::string shape;  // ellipsoid, box, superquadric or compound
+  bool is_dynamic = false;
+  Rigid3 world_from_object;  // at the start of the sequence if it moves
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Ones();  // m, tight, along the axes of the object
+  std::optional<TrueObjectStatus> status;                  // only in a rearranged scene
+  std::optional<Rigid3> former_world_from_object;          // pose before; only of a moved object
+
+  // Mean of the three full extents, m. Relative errors are divided by this.
+  double Size() const { return 2.0 * half_extents.mean(); }
+};
+
+// The true objects of a synthetic sequence, and those that a rearrangement of the scene took away.
+struct TrueScene {
+  bool is_rearranged = false;
+  std::vector<TrueObject> objects;
+  std::vector<TrueObject> gone;  // with their former poses; empty unless the scene was rearranged
+};
 
 // A mapped object compared with the true object that it represents.
 struct ObjectError {
@@ -79,5 +106,32 @@ struct SeenBox {
 void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,
                     const Rigid3& cam_from_truth, std::span<const SeenBox> seen,
                     std::vector<size_t>& sightings);
+
+// The numbers of changes of one kind: true changes, reported changes, and reported changes that are
+// right.
+struct ChangeCounts {
+  size_t in_truth = 0;
+  size_t reported = 0;
+  size_t right = 0;
+};
+
+struct ChangeComparison {
+  ChangeCounts moved;
+  ChangeCounts gone;
+  ChangeCounts added;  // ObjectChange::kNew
+  // Locations that an object left, and locations that an object newly takes. A moved object counts
+  // in both, so it does not matter which of two cups was moved.
+  ChangeCounts left;
+  ChangeCounts taken;
+};
+
+// Compares the reported changes with a rearranged scene. A reported location agrees with a true
+// object, of any class, if the distance of the two centres is at most half of the Size() of the
+// true object. Each true object is counted once. Moving true objects are left out, and so are those
+// of `scene.objects` whose entry in `sightings` is less than `min_sightings`; `sightings` may be
+// empty. The scene is in metres; `truth_from_map` has the scale 1 if the map is in metres too.
+ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
+                                const Sim3& truth_from_map, std::span<const size_t> sightings,
+                                size_t min_sightings);
 
 }  // namespace hullslam

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eval/relocalisation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <random>
 #include <utility>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {
@@ -66,6 +69,41 @@ std::vector<QuerySummary> SummarizeQueries(std::span<const QueryResult> results)
       Summarize("not found", results, [](const QueryResult& result) { return !result.found; }));
   lines.push_back(Summarize("all", results, [](const QueryResult&) { return true; }));
   return lines;
+}
+
+QueryResult Relocalise(const Relocaliser& relocaliser, const Frame& frame,
+                       const PointAlignment& truth_from_map, const Rigid3& true_world_from_cam) {
+  QueryResult result;
+  const auto start = std::chrono::steady_clock::now();
+  result.found = relocaliser.Find(frame);
+  result.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (result.found) {
+    const Eigen::Vector3d position = Inverse(result.found->cam_from_world).translation;
+    result.error = (truth_from_map * position - true_world_from_cam.translation).norm();
+  }
+  return result;
+}
+
+std::string DescribeQuery(const QueryResult& result) {
+  return result.found
+             ? fmt::format("by {}, error {:.4f} m, {} landmarks, {} objects, {:.1f} ms\n",
+                           ToString(result.found->method), result.error, result.found->inliers,
+                           result.found->used_objects, result.milliseconds)
+             : fmt::format("not found, {:.1f} ms\n", result.milliseconds);
+}
+
+std::string DescribeQueries(std::span<const QueryResult> results) {
+  std::string text = fmt::format("{:<9}  {:>7}  {:>8}  {:>9}  {:>5}  {:>9}  {:>6}\n", "method",
+                                 "queries", "<= 5 cm", "<= 10 cm", "false", "median ms", "max ms");
+  for (const QuerySummary& line : SummarizeQueries(results)) {
+    const std::string duration =
+        line.queries == 0 ? fmt::format("{:>9}  {:>6}", "-", "-")
+                          : fmt::format("{:>9.1f}  {:>6.1f}", line.median_ms, line.max_ms);
+    text += fmt::format("{:<9}  {:>7}  {:>6.1f} %  {:>7.1f} %  {:>5}  {}\n", line.name,
+                        line.queries, line.near_percent, line.far_percent, line.wrong, duration);
+  }
+  return text;
 }
 
 }  // namespace hullslam

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/frame/frame.h"
+#include "hullslam/geometry/alignment.h"
+#include "hullslam/geometry/rigid3.h"
 #include "hullslam/system/relocaliser.h"
 
 namespace hullslam {
@@ -35,5 +38,13 @@ struct QuerySummary {
 
 // One entry for each method, for the frames that were not found, and for all.
 std::vector<QuerySummary> SummarizeQueries(std::span<const QueryResult> results);
+
+// Looks for a frame in a map, whose world has this transform to that of the true pose.
+QueryResult Relocalise(const Relocaliser& relocaliser, const Frame& frame,
+                       const PointAlignment& truth_from_map, const Rigid3& true_world_from_cam);
+
+// A query as a line of text, and the table of all of them.
+std::string DescribeQuery(const QueryResult& result);
+std::string DescribeQueries(std::span<const QueryResult> results);
 
 }  // namespace hullslam

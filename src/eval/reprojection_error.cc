@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "eval/change_groundtruth.h"
 #include "eval/object_groundtruth.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/frame/instance_mask.h"

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 namespace {

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/staging_folder.h"
-#include "files/synced_file.h"
+#include "files/staged_file.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

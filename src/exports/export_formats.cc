@@ -9,12 +9,9 @@
 #include "exports/colmap_model.h"
 #include "exports/export_folder.h"
 #include "exports/export_images.h"
-#include "exports/g2o_graph.h"
-#include "exports/glb_file.h"
-#include "exports/pose_files.h"
-#include "exports/scene_ply.h"
-#include "files/atomic_file.h"
-#include "util/counted.h"
+#include "exports/single_files.h"
+#include "files/staged_file.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "exports/export_input.h"
-#include "exports/export_model.h"
 
 namespace hullslam {
 

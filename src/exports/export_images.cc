@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
-#include "frame/detection/dynamic_mask.h"
+#include "frame/detection/mask_region.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 #include "view/point_colours.h"
 
 namespace hullslam {

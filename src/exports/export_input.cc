@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "exports/export_input.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,7 @@
 
 #include "datasets/run_sequence.h"
 #include "eval/object_metrics.h"
-#include "files/canonical_path.h"
+#include "files/paths.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "map/islands.h"
@@ -18,6 +19,23 @@
 #include "system/make_sensor.h"
 
 namespace hullslam {
+
+std::vector<PlacedObject> PlaceObjects(const Scene& scene, ObjectShape shape) {
+  std::vector<PlacedObject> placed;
+  for (const SceneObject& object : scene.objects) {
+    if (shape == ObjectShape::kBoxes && object.box) {
+      placed.push_back({&object, object.box->world_from_box, object.box->half_extents});
+    } else {
+      placed.push_back({&object, object.ellipsoid.world_from_object, object.ellipsoid.half_axes});
+    }
+  }
+  return placed;
+}
+
+TriangleMesh MeshOf(ObjectShape shape) {
+  return shape == ObjectShape::kBoxes ? UnitCube() : UnitSphere();
+}
+
 namespace {
 
 namespace fs = std::filesystem;

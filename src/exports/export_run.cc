@@ -5,7 +5,7 @@
 
 #include "exports/export_folder.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/g2o_graph.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "camera/point_measurement.h"
+#include "exports/single_files.h"
 
 namespace hullslam {
 namespace {

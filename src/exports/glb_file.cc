@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/glb_file.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "files/byte_writer.h"
+#include "exports/single_files.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 namespace {

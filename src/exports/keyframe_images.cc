@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 
 namespace hullslam {
 namespace {

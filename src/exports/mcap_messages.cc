@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bags/cdr_writer.h"
+#include "bags/message_fields.h"
 #include "camera/wide_lens.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"

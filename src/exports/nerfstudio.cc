@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hullslam/camera/depth.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

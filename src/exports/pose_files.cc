@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/pose_files.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+
+#include "exports/single_files.h"
 
 namespace hullslam {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/scene_ply.h"
-
 #include <array>
 
-#include "results/ply_writer.h"
-#include "util/median.h"
+#include "exports/single_files.h"
+#include "results/ply_file.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

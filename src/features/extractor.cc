@@ -10,7 +10,6 @@
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"
 #include "features/quadtree_selection.h"
-#include "features/straight_edge.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -1,11 +1,162 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "features/pyramid.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "hullslam/util/check.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
+
+namespace {
+
+constexpr int kOne = 256;  // the weights are in units of 1 / kOne
+constexpr size_t kPixels = ShrinkBlock::kPixels;
+
+using Bytes = uint8_t __attribute__((vector_size(2 * kPixels)));
+using Words = uint16_t __attribute__((vector_size(2 * kPixels)));
+
+template <typename Vector>
+inline Vector Load(const void* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof(vector));
+  return vector;
+}
+
+// The pixels at the even bytes of `indices`, as 16-bit numbers.
+inline Words Pick(Bytes pixels, Bytes indices) {
+#ifdef __clang__
+  Words picked{};
+  for (size_t i = 0; i < kPixels; ++i) {
+    picked[i] = pixels[indices[2 * i]];
+  }
+  return picked;
+#else
+  const Bytes picked = __builtin_shuffle(pixels, indices);
+  return reinterpret_cast<Words>(picked) & 0xff;
+#endif
+}
+
+HULLSLAM_FUNCTION_CLONES
+void ShrinkRow(const uint8_t* __restrict row, const ShrinkBlock* blocks, size_t count,
+               uint16_t* __restrict shrunk) {
+  for (size_t i = 0; i < count; ++i) {
+    const ShrinkBlock& block = blocks[i];
+    const auto pixels = Load<Bytes>(row + block.from);
+    const Words first = Pick(pixels, Load<Bytes>(block.first.data()));
+    const Words second = Pick(pixels, Load<Bytes>(block.second.data()));
+    const Words sum = first * Load<Words>(block.first_weight.data()) +
+                      second * Load<Words>(block.second_weight.data());
+    std::memcpy(shrunk + kPixels * i, &sum, sizeof(sum));
+  }
+}
+
+// The weighted sum of two rows, divided by kOne^2 and rounded. High and low bytes are summed
+// separately, so 16 bits are enough.
+HULLSLAM_FUNCTION_CLONES
+void MixRows(const uint16_t* __restrict first, const uint16_t* __restrict second,
+             uint16_t second_weight, int width, uint8_t* __restrict mixed) {
+  const auto first_weight = static_cast<uint16_t>(kOne - second_weight);
+  for (int x = 0; x < width; ++x) {
+    const auto high =
+        static_cast<uint16_t>(first_weight * (first[x] >> 8) + second_weight * (second[x] >> 8));
+    const auto low = static_cast<uint16_t>(first_weight * (first[x] & 0xff) +
+                                           second_weight * (second[x] & 0xff));
+    mixed[x] = static_cast<uint8_t>(static_cast<uint16_t>(high + (low >> 8) + kOne / 2) >> 8);
+  }
+}
+
+}  // namespace
+
+// The source pixels of the centres of all pixels, as in OpenCV.
+std::vector<ImageShrinker::Source> ImageShrinker::SourcesOf(int from, int to) {
+  const double scale = 1.0 / (static_cast<double>(to) / from);
+  std::vector<Source> sources;
+  sources.reserve(static_cast<size_t>(to));
+  for (int i = 0; i < to; ++i) {
+    const double position = scale * (i + 0.5) - 0.5;
+    const int first = static_cast<int>(std::floor(position));
+    if (first + 1 < from) {
+      const auto weight = static_cast<uint16_t>(cvRound(kOne * (position - first)));
+      sources.push_back({.first = first, .second_weight = weight});
+    } else {
+      sources.push_back({.first = from - 2, .second_weight = kOne});
+    }
+  }
+  return sources;
+}
+
+// Returns no blocks if the sources of eight pixels can be more than 16 pixels apart.
+std::vector<ShrinkBlock> ImageShrinker::BlocksOf(const std::vector<Source>& columns) {
+  std::vector<ShrinkBlock> blocks;
+  for (size_t x = 0; x < columns.size(); x += kPixels) {
+    ShrinkBlock block{.from = columns[x].first};
+    for (size_t i = 0; i < kPixels; ++i) {
+      const Source& source = columns[std::min(x + i, columns.size() - 1)];
+      const int index = source.first - block.from;
+      if (index + 1 >= static_cast<int>(2 * kPixels)) {
+        return {};
+      }
+      block.first[2 * i] = static_cast<uint8_t>(index);
+      block.second[2 * i] = static_cast<uint8_t>(index + 1);
+      block.first_weight[i] = static_cast<uint16_t>(kOne - source.second_weight);
+      block.second_weight[i] = source.second_weight;
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+void ImageShrinker::MakeTables(cv::Size from, cv::Size to) {
+  from_ = from;
+  to_ = to;
+  blocks_.clear();
+  if (std::min(from.width, from.height) >= 2) {
+    blocks_ = BlocksOf(SourcesOf(from.width, to.width));
+    rows_ = SourcesOf(from.height, to.height);
+    row_.assign(static_cast<size_t>(from.width) + 2 * kPixels, 0);
+    shrunk_rows_.resize(2 * kPixels * blocks_.size());
+  }
+}
+
+// Row y of the image, shrunk to the new width, in 1/256 grey levels. The rows are asked for from
+// top to bottom, so two of them are kept.
+const uint16_t* ImageShrinker::ShrunkRow(const cv::Mat& image, int y) {
+  const auto slot = static_cast<size_t>(y % 2);
+  uint16_t* const shrunk = shrunk_rows_.data() + slot * kPixels * blocks_.size();
+  if (shrunk_y_[slot] != y) {
+    shrunk_y_[slot] = y;
+    std::copy_n(image.ptr(y), image.cols, row_.begin());
+    ShrinkRow(row_.data(), blocks_.data(), blocks_.size(), shrunk);
+  }
+  return shrunk;
+}
+
+void ImageShrinker::Shrink(const cv::Mat& image, cv::Size size, cv::Mat& shrunk) {
+  Check(image.type() == CV_8UC1, "the image is not CV_8UC1");
+  Check(size.width > 0 && size.height > 0, "the image would have no pixel");
+  Check(size.width <= image.cols && size.height <= image.rows, "the image would grow");
+  if (from_ != image.size() || to_ != size) {
+    MakeTables(image.size(), size);
+  }
+  if (blocks_.empty()) {
+    cv::resize(image, shrunk, size, 0.0, 0.0, cv::INTER_LINEAR_EXACT);
+    return;
+  }
+  shrunk.create(size, CV_8UC1);
+  shrunk_y_ = {-1, -1};
+  for (int y = 0; y < size.height; ++y) {
+    const Source& source = rows_[static_cast<size_t>(y)];
+    const uint16_t* const first = ShrunkRow(image, source.first);
+    const uint16_t* const second = ShrunkRow(image, source.first + 1);
+    MixRows(first, second, source.second_weight, size.width, shrunk.ptr(y));
+  }
+}
 
 ImagePyramid::ImagePyramid(const ScaleLevels& levels)
     : scale_(levels.scale), images_(levels.scale.size()), shrinkers_(levels.scale.size()) {}

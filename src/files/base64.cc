@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "util/ascii.h"
+#include "util/text.h"
 
 namespace hullslam {
 

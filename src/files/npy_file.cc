@@ -10,11 +10,10 @@
 #include <string>
 #include <string_view>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "util/printable.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

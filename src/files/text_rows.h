@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "camera/point_measurement.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

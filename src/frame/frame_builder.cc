@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "camera/fit_depth.h"
-#include "frame/detection/dynamic_mask.h"
+#include "frame/detection/mask_region.h"
 #include "frame/keypoint_grid.h"
 
 namespace hullslam {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "frame/measure_point.h"
 
 #include <optional>
@@ -17,6 +18,13 @@ PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& feature
     measurement.TakeLens(sensor.camera.DistortionJacobian(pixel));
   }
   return measurement;
+}
+
+Sensor WithWideErrors(Sensor sensor) {
+  sensor.depth_error.pixel_sigma *= kWideErrorFactor;
+  sensor.depth_error.adjustment_pixel_sigma *= kWideErrorFactor;
+  sensor.depth_error.disparity_sigma *= kWideErrorFactor;
+  return sensor;
 }
 
 }  // namespace hullslam

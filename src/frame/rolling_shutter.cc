@@ -9,7 +9,7 @@
 
 #include "frame/keypoint_grid.h"
 #include "hullslam/util/check.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

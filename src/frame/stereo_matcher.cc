@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "frame/stereo_matcher.h"
 
 #include <algorithm>
@@ -7,11 +8,13 @@
 #include <cstdlib>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "frame/patch_fit.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
+
 namespace {
 
 // The constants are those of ORB-SLAM2.
@@ -113,6 +116,24 @@ std::vector<float> StereoMatcher::Match(const StereoImage& left, const StereoIma
     }
   }
   return disparities;
+}
+
+StereoFeatures::StereoFeatures(const FeatureOptions& features, const PinholeCamera& camera)
+    : extractor_(features), matcher_(extractor_.levels(), camera.fx) {}
+
+ExtractedFeatures StereoFeatures::Extract(FeatureExtractor& left_extractor, const cv::Mat& left,
+                                          const cv::Mat& right, TaskRunner& runner,
+                                          const std::array<cv::Mat, 2>& ignored) {
+  std::array<ExtractedFeatures, 2> both =
+      FeatureExtractor::ExtractPair({&left_extractor, &extractor_}, {left, right}, runner, ignored);
+  right_ = std::move(both[1]);
+  return std::move(both[0]);
+}
+
+std::vector<float> StereoFeatures::FindDisparities(const ExtractedFeatures& left,
+                                                   const ImagePyramid& left_pyramid,
+                                                   TaskRunner& runner) {
+  return matcher_.Match({left, left_pyramid}, {right_, extractor_.pyramid()}, runner);
 }
 
 }  // namespace hullslam

@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 namespace {

@@ -41,4 +41,12 @@ Trajectory OfOtherCamera(Trajectory trajectory, const Rigid3& cam_from_other) {
   return trajectory;
 }
 
+std::vector<double> StampsOf(const Trajectory& trajectory) {
+  std::vector<double> stamps;
+  for (const StampedPose& pose : trajectory) {
+    stamps.push_back(pose.timestamp);
+  }
+  return stamps;
+}
+
 }  // namespace hullslam

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "geometry/triangulation.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 
 namespace hullslam {
+
+Eigen::Matrix3d EssentialFromPose(const Rigid3& b_from_a) {
+  return Skew(b_from_a.translation) * b_from_a.rotation.toRotationMatrix();
+}
+
+Eigen::Matrix3d FundamentalFromPose(const Rigid3& b_from_a, const Eigen::Matrix3d& k_a,
+                                    const Eigen::Matrix3d& k_b) {
+  return k_b.inverse().transpose() * EssentialFromPose(b_from_a) * k_a.inverse();
+}
 
 std::optional<Eigen::Vector3d> TriangulatePoint(const Rigid3& a_from_world,
                                                 const Eigen::Vector2d& point_in_a,

@@ -11,6 +11,17 @@
 
 namespace hullslam {
 
+// Images of 16 bits use as many of them as the camera has: 10, 12, 14 or 16, which the largest
+// value of all images of the camera tells. The highest of these become the 8 bits that are read;
+// what is brighter is white. An image of 8 bits is returned as it is.
+cv::Mat To8Bits(const cv::Mat& image, uint16_t brightest);
+
+// The luma of an image in colour, CV_8UC3 or CV_8UC4, as libpng computes it when OpenCV reads a PNG
+// in grey: in units of 1 / 32768, rounded down. cv::cvtColor rounds in another way, so that a
+// recording would give another trajectory than the PNG files of the same images. `red` is the
+// channel of red, 0 or 2.
+cv::Mat GreyLikePng(const cv::Mat& image, int red);
+
 constexpr uint64_t kMostImagePixels = 64'000'000;
 constexpr uint64_t kMostImageSide = 65'535;  // px, as in a JPEG; each row has a cost of its own
 
@@ -21,7 +32,7 @@ constexpr uint64_t kMostImageSide = 65'535;  // px, as in a JPEG; each row has a
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
 // calibration of the camera refers to the pixels as stored. Images with 16 bits per channel are
 // errors too: they may be depth images. With `brightest`, for data sets without depth, they become
-// 8 bits by To8Bits() (eight_bits.h).
+// 8 bits by To8Bits().
 cv::Mat ReadGreyImage(const std::filesystem::path& path,
                       std::optional<uint16_t> brightest = std::nullopt);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "images/jpeg_codec.h"
+#include "images/image_codecs.h"
 
 // jpeglib.h needs size_t and FILE.
 #include <cstddef>
@@ -17,7 +17,6 @@ extern "C" {
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "images/png_codec.h"
 
 namespace hullslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "images/png_codec.h"
-
 #include <png.h>
 #include <zlib.h>
 
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "images/image_codecs.h"
 
 namespace hullslam {
 namespace {

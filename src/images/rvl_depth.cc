@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "live/http_access.h"
 
 #include <arpa/inet.h>
@@ -8,9 +9,10 @@
 #include <array>
 #include <random>
 
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr std::string_view kScheme = "http://";

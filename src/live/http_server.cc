@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "live/rate_limit.h"
+#include "live/http_access.h"
 #include "util/thread_priority.h"
 
 namespace hullslam {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "live/live_inbox.h"
 
 #include <chrono>
@@ -7,6 +8,35 @@
 #include "hullslam/map/tracking_failure.h"
 
 namespace hullslam {
+
+void TrackHistory::Add(const TrackedFrame& frame) {
+  const bool is_kept = count_++ % stride_ == 0;
+  if (frame.state != TrackingState::kTracked) {
+    return;
+  }
+  newest_ = frame;
+  if (!is_kept) {
+    return;
+  }
+  if (frames_.size() >= most_) {
+    size_t kept = 0;
+    for (size_t i = 0; i < frames_.size(); i += 2) {
+      frames_[kept++] = frames_[i];
+    }
+    frames_.resize(kept);
+    stride_ *= 2;
+    ++thinnings_;
+  }
+  frames_.push_back(frame);
+}
+
+std::vector<TrackedFrame> TrackHistory::frames() const {
+  std::vector<TrackedFrame> frames = frames_;
+  if (newest_ && (frames.empty() || newest_->timestamp > frames.back().timestamp)) {
+    frames.push_back(*newest_);
+  }
+  return frames;
+}
 
 void LiveInbox::Put(LiveFrame frame) {
   // These are released without the lock, because freeing a map may take long.

@@ -11,18 +11,39 @@
 
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
-#include "live/track_history.h"
 
 namespace hullslam {
 
+// The tracked frames of a run for its path in a viewer. It keeps at most `most` of them, evenly
+// chosen, and the newest one, so that its memory does not grow with the length of the run.
+class TrackHistory {
+ public:
+  explicit TrackHistory(size_t most) : most_(most) {}
+
+  void Add(const TrackedFrame& frame);
+
+  // The frames that are kept, and the newest one, so that the path reaches the camera.
+  std::vector<TrackedFrame> frames() const;
+  // Counts how often frames were removed. As long as it stays the same, frames are only added.
+  size_t thinnings() const { return thinnings_; }
+
+ private:
+  const size_t most_;
+  std::vector<TrackedFrame> frames_;
+  std::optional<TrackedFrame> newest_;
+  size_t stride_ = 1;
+  size_t count_ = 0;  // frames that were given
+  size_t thinnings_ = 0;
+};
+
 // The data of one frame. Large parts are shared, so handing it over takes microseconds.
 struct LiveFrame {
-  FrameReport report;
-  std::shared_ptr<const Map> map;  // null before the first keyframe
-  cv::Mat grey;                    // the image in raw pixels, CV_8UC1; may be empty
-  size_t number = 0;               // of the frame in the run, counted from 1
-  double build_ms = 0.0;           // time of finding features
-  double track_ms = 0.0;           // time of tracking, and in a sequential run of mapping
+  FrameReport report = {};
+  std::shared_ptr<const Map> map = {};  // null before the first keyframe
+  cv::Mat grey = {};                    // the image in raw pixels, CV_8UC1; may be empty
+  size_t number = 0;                    // of the frame in the run, counted from 1
+  double build_ms = 0.0;                // time of finding features
+  double track_ms = 0.0;                // time of tracking, and in a sequential run of mapping
 };
 
 // A stretch of frames without a pose that has ended.

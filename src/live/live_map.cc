@@ -10,7 +10,7 @@
 #include "eval/object_metrics.h"
 #include "map/islands.h"
 #include "map/located_landmarks.h"
-#include "util/thin.h"
+#include "util/lists.h"
 #include "view/view_of_map.h"
 
 namespace hullslam {

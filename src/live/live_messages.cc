@@ -8,10 +8,9 @@
 
 #include "map/islands.h"
 #include "system/compose_trajectory.h"
-#include "util/printable.h"
-#include "util/thin.h"
+#include "util/lists.h"
+#include "util/text.h"
 #include "view/aligned_truth.h"
-#include "view/packed_array.h"
 #include "view/view_message.h"
 
 namespace hullslam {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "hullslam/geometry/dual_quadric.h"
-#include "images/jpeg_codec.h"
+#include "images/image_codecs.h"
 #include "map/islands.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 

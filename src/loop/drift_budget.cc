@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "map/islands.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

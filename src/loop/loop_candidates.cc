@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "loop/loop_candidates.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
-#include "map/covisibility.h"
+#include "loop/loop_correction.h"
+#include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "places/similar_places.h"
 #include "util/id_set.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
@@ -80,6 +86,85 @@ std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query) 
     candidates.push_back({keyframe, static_cast<int>(supporters)});
   }
   return candidates;
+}
+
+namespace {
+
+constexpr size_t kElsewhere = 10;  // least number of keyframes from elsewhere between two visits
+
+// The keyframes of the query's island and session that are older than the query and not connected
+// to it, by increasing id.
+std::vector<KeyframeId> Elsewhere(const Map& map, KeyframeId query) {
+  const auto session = [&](KeyframeId id) {
+    return SessionNumber(map.sessions(), map.keyframes().At(id).frame->id);
+  };
+  const IdSet<KeyframeId> connected = ConnectedTo(map, query);
+  std::vector<KeyframeId> elsewhere = KeyframesOf(map, IslandOf(map, query));
+  std::erase_if(elsewhere, [&](KeyframeId id) {
+    return id >= query || connected.Contains(id) || session(id) != session(query);
+  });
+  return elsewhere;
+}
+
+// Whether a loop leads from one of the keyframes to one of the others.
+bool AreJoined(const Map& map, const std::vector<KeyframeId>& some,
+               const std::vector<KeyframeId>& others) {
+  return std::any_of(some.begin(), some.end(), [&](KeyframeId id) {
+    const std::vector<KeyframeId>& loops = map.keyframes().At(id).loops;
+    return std::any_of(loops.begin(), loops.end(), [&](KeyframeId end) {
+      return std::binary_search(others.begin(), others.end(), end);
+    });
+  });
+}
+
+// The number of landmarks of the query that others observe too.
+size_t CountShared(const Map& map, KeyframeId query, const std::vector<KeyframeId>& others) {
+  const std::vector<LandmarkId> of_query = ObservedLandmarks(map, std::span(&query, 1));
+  const std::vector<LandmarkId> of_others = ObservedLandmarks(map, others);
+  return static_cast<size_t>(std::count_if(of_query.begin(), of_query.end(), [&](LandmarkId id) {
+    return std::binary_search(of_others.begin(), of_others.end(), id);
+  }));
+}
+
+}  // namespace
+
+std::optional<Return> FindReturn(const Map& map, KeyframeId query, size_t min_landmarks) {
+  const std::vector<KeyframeId> elsewhere = Elsewhere(map, query);
+  if (elsewhere.size() < kElsewhere) {
+    return std::nullopt;
+  }
+  // Between a keyframe before `bound` and the query there are enough keyframes from elsewhere.
+  const KeyframeId bound = elsewhere[elsewhere.size() - kElsewhere];
+  const Covisible* best = nullptr;
+  for (const Covisible& other : map.keyframes().At(query).covisible) {
+    if (other.keyframe < bound && (best == nullptr || other.shared > best->shared)) {
+      best = &other;
+    }
+  }
+  if (best == nullptr) {
+    return std::nullopt;
+  }
+  const KeyframeId left = *std::upper_bound(elsewhere.begin(), elsewhere.end(), best->keyframe);
+  const KeyframeId came_back = elsewhere.back();
+  Return found{.query = query,
+               .candidate = best->keyframe,
+               .present = KeyframesAround(map, query),
+               .earlier = KeyframesAround(map, best->keyframe)};
+  std::erase_if(found.present, [&](KeyframeId id) { return id < came_back; });
+  std::erase_if(found.earlier, [&](KeyframeId id) { return id > left; });
+  const bool is_new = !AreJoined(map, found.present, found.earlier) &&
+                      CountShared(map, query, found.earlier) >= min_landmarks;
+  return is_new ? std::optional(std::move(found)) : std::nullopt;
+}
+
+MapCorrection JoinVisits(const Map& map, const Sensor& sensor, const Return& found,
+                         const FusionOptions& fusion) {
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  correction.loop = MapCorrection::LoopEdge{found.candidate, found.query};
+  AddLandmarkMerges(map, sensor, found.present, found.earlier, correction);
+  AddObjectMerges(map, found.present, fusion, correction);
+  return correction;
 }
 
 }  // namespace hullslam

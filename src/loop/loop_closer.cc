@@ -10,12 +10,12 @@
 
 #include "loop/drift_budget.h"
 #include "loop/island_join.h"
+#include "loop/loop_candidates.h"
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
-#include "loop/return_to_place.h"
 #include "map/correction.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
 

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "loop/loop_correction.h"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "objects/fusion.h"
+#include "optim/bundle_adjustment.h"
 #include "optim/pose_graph.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph
@@ -212,6 +215,40 @@ void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
   merger.Add(loop.query, loop.landmarks);
   SearchAndMerge(corrected, sensor, at_query, kept, merger);
   AddObjectMerges(corrected, at_query, fusion, correction);
+}
+
+namespace {
+
+void Append(const Map& map, const BundleResult& result, MapCorrection& correction) {
+  for (const auto& [id, pose] : result.poses) {
+    correction.poses.push_back({id, map.keyframes().At(id).cam_from_world, Sim3(pose)});
+  }
+  for (const auto& [id, position] : result.positions) {
+    correction.positions.push_back({id, position});
+  }
+}
+
+}  // namespace
+
+std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
+                                            const ObjectOptions& objects,
+                                            const Cancellation* cancellation) {
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  bool is_adjusted = false;
+  for (const IslandId island : Islands(map)) {
+    const BundleResult result = AdjustIsland(map, island, sensor, objects, cancellation).result;
+    if (result.is_usable) {
+      Append(map, result, correction);
+      is_adjusted = true;
+    }
+  }
+  if (!is_adjusted || IsRequested(cancellation)) {
+    return std::nullopt;
+  }
+  std::sort(correction.poses.begin(), correction.poses.end(),
+            [](const auto& a, const auto& b) { return a.keyframe < b.keyframe; });
+  return correction;
 }
 
 }  // namespace hullslam

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_options.h"
+#include "hullslam/util/cancellation.h"
 #include "loop/loop_verification.h"
 #include "util/id_set.h"
 
@@ -42,5 +44,12 @@ void AddObjectMerges(const Map& map, const std::vector<KeyframeId>& observers,
 // around the query are compared with all others. `corrected` is the map with the correction.
 void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
                const FusionOptions& fusion, MapCorrection& correction);
+
+// Bundle adjustment of the whole map, one island after the other. To be called after a loop was
+// closed. The correction moves all keyframes and landmarks; objects follow their keyframes. Null if
+// `cancellation` (may be null) was requested, or if the solver failed.
+std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
+                                            const ObjectOptions& objects,
+                                            const Cancellation* cancellation);
 
 }  // namespace hullslam

@@ -9,10 +9,10 @@
 
 #include "estimators/similarity.h"
 #include "frame/measure_point.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "optim/similarity_optimization.h"
 #include "places/similar_places.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "loop/loop_correction.h"
 #include "objects/visibility.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "frame/reduced_frame.h"
 #include "hullslam/util/check.h"
-#include "util/valid_ids.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "util/id_set.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

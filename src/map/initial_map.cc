@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "util/median.h"
-#include "util/reached_by.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

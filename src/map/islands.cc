@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <map>
 
+#include "map/keyframe_graph.h"
 #include "map/keyframe_order.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

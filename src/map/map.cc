@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 
 namespace hullslam {
 namespace {

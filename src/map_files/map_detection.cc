@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "map_files/map_records.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "files/plausible.h"
 #include "map_files/map_records.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

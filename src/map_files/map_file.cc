@@ -16,7 +16,6 @@
 
 #include "files/staged_file.h"
 #include "hullslam/util/error.h"
-#include "map_files/map_parser.h"
 #include "map_files/map_records.h"
 
 namespace hullslam {

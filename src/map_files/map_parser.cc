@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map_files/map_parser.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -3,11 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <istream>
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "files/byte_reader.h"
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map_tables.h"
 #include "hullslam/map_files/map_file.h"
@@ -47,7 +48,7 @@ std::shared_ptr<const Frame> ReadFrame(const MapHeader& header, ByteReader& in);
 void WriteDetection(const Detection& detection, ByteWriter& out);
 Detection ReadDetection(size_t keypoints, ByteReader& in);
 
-// In map_words.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
+// In map_frame.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
 // of the vocabulary is checked in map/restored_map.h.
 void WriteWords(const Frame& frame, ByteWriter& out);
 void ReadWords(Frame& frame, ByteReader& in);
@@ -67,5 +68,17 @@ void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables);
 // A rotation is written as four numbers x y z w, whose length is 1 up to rounding.
 void WritePose(const Rigid3& pose, ByteWriter& out);
 Rigid3 ReadPose(ByteReader& in);
+
+// Reads the records of a map file of this version of the format: everything except the first bytes,
+// which name the format, and the checksum at the end. They are the next `size` bytes of the stream
+// and may have any values. `name` begins all messages. `expected` are the settings of the run; null
+// if any settings are allowed. Throws InputError and ReadingCancelled like ReadMap().
+StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
+                   const MapSettings* expected,
+                   std::shared_ptr<const Vocabulary> vocabulary = nullptr,
+                   const Cancellation* cancellation = nullptr);
+
+// Throws ReadingCancelled if that was requested.
+void EndIfCancelled(const Cancellation* cancellation, const std::string& name);
 
 }  // namespace hullslam

@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
-#include "files/atomic_file.h"
-#include "files/data_path.h"
+#include "files/paths.h"
 #include "files/read_file.h"
+#include "files/staged_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "map_files/vocabulary_text.h"

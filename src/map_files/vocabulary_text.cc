@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "bow/vocabulary_builder.h"
-#include "bow/vocabulary_layout.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -5,10 +5,9 @@
 #include <array>
 
 #include "hullslam/util/check.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
-#include "map/spanning_tree.h"
 #include "mapping/sensor_rules.h"
 
 namespace hullslam {

@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "frame/measure_point.h"
-#include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

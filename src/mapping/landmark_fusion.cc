@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "frame/measure_point.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

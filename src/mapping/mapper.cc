@@ -8,19 +8,17 @@
 #include <utility>
 #include <variant>
 
-#include "frame/wide_sensor.h"
+#include "frame/measure_point.h"
 #include "map/correction.h"
 #include "map/islands.h"
-#include "mapping/contradicted_landmarks.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
 #include "mapping/landmark_fusion.h"
 #include "mapping/late_detections.h"
 #include "mapping/old_keyframes.h"
-#include "objects/known_sizes.h"
+#include "objects/object_extents.h"
 #include "optim/bundle_adjustment.h"
-#include "optim/island_adjustment.h"
 
 namespace hullslam {
 namespace {

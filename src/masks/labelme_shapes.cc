@@ -14,7 +14,7 @@
 #include "files/json_file.h"
 #include "files/plausible.h"
 #include "frame/detection/mask_outline.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "images/image_file.h"
 #include "masks/mask_checks.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_boxes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "files/plausible.h"
 #include "masks/mask_checks.h"
+#include "masks/mask_format.h"
 #include "masks/mask_text.h"
 
 namespace hullslam {

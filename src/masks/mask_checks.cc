@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "frame/detection/sort_outlines.h"
-#include "util/ascii.h"
-#include "util/printable.h"
+#include "frame/detection/mask_outline.h"
+#include "util/text.h"
 
 namespace hullslam {
 std::string ImageStem(std::string_view name) {

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

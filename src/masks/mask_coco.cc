@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_coco.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,9 +12,10 @@
 #include "hullslam/util/error.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_coco_instance.h"
+#include "masks/mask_format.h"
 #include "masks/mask_json.h"
 #include "masks/mask_rle.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

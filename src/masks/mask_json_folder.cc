@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_json_folder.h"
-
 #include <fmt/format.h>
 
 #include <optional>
@@ -12,6 +10,7 @@
 #include "masks/labelme_shapes.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_coco_instance.h"
+#include "masks/mask_format.h"
 #include "masks/mask_json.h"
 #include "masks/mask_text.h"
 

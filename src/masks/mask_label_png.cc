@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_label_png.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -22,8 +20,9 @@
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "masks/mask_checks.h"
+#include "masks/mask_format.h"
 #include "masks/mask_text.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_oa_slam.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "files/plausible.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_classes.h"
+#include "masks/mask_format.h"
 #include "masks/mask_json.h"
 
 namespace hullslam {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_paper.h"
-
 #include <fmt/format.h>
 
 #include <system_error>
 #include <utility>
 
 #include "masks/mask_checks.h"
+#include "masks/mask_format.h"
 #include "masks/mask_text.h"
 
 namespace hullslam {

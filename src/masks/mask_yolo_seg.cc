@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_yolo_seg.h"
-
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
+#include "masks/mask_format.h"
 #include "masks/mask_text.h"
 
 namespace hullslam {

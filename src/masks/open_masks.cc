@@ -12,15 +12,9 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "masks/embedded_masks.h"
-#include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
-#include "masks/mask_coco.h"
-#include "masks/mask_json_folder.h"
-#include "masks/mask_label_png.h"
-#include "masks/mask_oa_slam.h"
-#include "masks/mask_paper.h"
+#include "masks/mask_format.h"
 #include "masks/mask_probe.h"
-#include "masks/mask_yolo_seg.h"
 
 namespace hullslam {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/object_sighting.h"
 #include "objects/visibility.h"
 #include "util/id_set.h"

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "map/islands.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
 #include "util/id_set.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

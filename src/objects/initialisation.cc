@@ -11,7 +11,7 @@
 #include "geometry/oriented_box.h"
 #include "geometry/polyline.h"
 #include "objects/constraint/point_statistics.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

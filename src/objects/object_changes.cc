@@ -10,10 +10,10 @@
 #include <span>
 
 #include "geometry/assignment.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/resolved_observation.h"
 #include "objects/visibility.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

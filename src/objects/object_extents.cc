@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "objects/object_extents.h"
 
 #include <ceres/autodiff_cost_function.h>
@@ -10,11 +11,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "objects/constraint/misfit.h"
+#include "objects/resolved_observation.h"
+#include "util/statistics.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr size_t kMinPlanes = 30;    // for nine unknowns; neighbouring planes are nearly equal
@@ -159,6 +165,28 @@ std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoi
   std::sort(extents.sides.begin(), extents.sides.end());
   extents.misfit = best->rms / extents.sides.z();
   return extents.misfit <= kMaxMisfit ? std::optional(extents) : std::nullopt;
+}
+
+KnownScale MeasureScale(const Map& map, const Sensor& sensor,
+                        const std::map<std::string, double>& sizes) {
+  std::vector<double> scales;  // one per observation
+  size_t objects = 0;
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    const bool is_mapped = object.state == ObjectState::kMapped;
+    const auto size = is_mapped ? sizes.find(object.Label()) : sizes.end();
+    if (size == sizes.end()) {
+      return;
+    }
+    if (const auto extents =
+            MeasureExtents(sensor, object.ellipsoid, ResolveObservations(map, object))) {
+      scales.insert(scales.end(), object.observations.size(), size->second / extents->sides.z());
+      ++objects;
+    }
+  });
+  if (scales.empty()) {
+    return {};
+  }
+  return {.objects = objects, .metres_per_unit = Median(std::move(scales))};
 }
 
 }  // namespace hullslam

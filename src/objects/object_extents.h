@@ -2,11 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/map/map.h"
 #include "objects/resolved_observation.h"
 
 namespace hullslam {
@@ -19,7 +23,7 @@ struct ObjectExtents {
 };
 
 // Measures an object by the two-sided lines of its observations: each is the image of a plane that
-// touches it (objects/misfit.h). Lines near the border of the image are left out, because networks
+// touches it (misfit.h). Lines near the border of the image are left out, because networks
 // end masks some pixels before it. The axes of the quadric are not the sides of the object: the
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
 // For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are fitted to
@@ -29,5 +33,18 @@ struct ObjectExtents {
 // neither body fits.
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
                                             std::span<const ResolvedObservation> observations);
+
+// The unit of length of a map, measured by objects of known size.
+struct KnownScale {
+  size_t objects = 0;  // mapped objects of known size that could be measured
+  // The median over these objects, each of which counts as often as it was observed; 1 without such
+  // objects.
+  double metres_per_unit = 1.0;
+};
+
+// `sizes` has the length of the longest side (m) by class. An object has the class with most votes,
+// and its longest side is measured with objects/object_extents.h.
+KnownScale MeasureScale(const Map& map, const Sensor& sensor,
+                        const std::map<std::string, double>& sizes);
 
 }  // namespace hullslam

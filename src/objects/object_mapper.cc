@@ -16,14 +16,13 @@
 #include "objects/association.h"
 #include "objects/constraint/misfit.h"
 #include "objects/constraint/point_statistics.h"
-#include "objects/contradicted_object.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/refinement.h"
 #include "objects/resolved_observation.h"
 #include "objects/start_method.h"
 #include "objects/visibility.h"
-#include "util/sort_unique.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

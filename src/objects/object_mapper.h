@@ -11,7 +11,6 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "map/contradictions.h"
-#include "objects/rejection.h"
 #include "objects/validity.h"
 
 namespace hullslam {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "hullslam/objects/object_options.h"
 
 #include <string>
 
+#include "hullslam/objects/object_constraint_options.h"
 #include "hullslam/util/error.h"
 #include "objects/comparison/association_measure.h"
 #include "objects/start_method.h"
 
 namespace hullslam {
+
 namespace {
 
 // The keys that refinement, joint pose estimation and bundle adjustment have.
@@ -194,5 +197,9 @@ void ObjectOptions::Validate() const {
   CheckResidual("pose", pose.constraint.residual, detection.primitive);
   CheckResidual("bundle", bundle.constraint.residual, detection.primitive);
 }
+
+std::vector<std::string> RobustLossNames() { return {"none", "huber", "cauchy", "tukey"}; }
+
+std::vector<std::string> SigmaUnitNames() { return {"pixels", "residual"}; }
 
 }  // namespace hullslam

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "estimators/p3p.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "hullslam/geometry/alignment.h"
 #include "map/islands.h"
 #include "objects/object_sighting.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "objects/constraint/object_constraint.h"
 
 namespace hullslam {

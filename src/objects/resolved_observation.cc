@@ -8,7 +8,7 @@
 
 #include "hullslam/util/check.h"
 #include "objects/constraint/point_statistics.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

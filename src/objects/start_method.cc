@@ -6,9 +6,6 @@
 #include <optional>
 #include <string_view>
 
-#include "objects/comparison/start_box_planes.h"
-#include "objects/comparison/start_oriented_box.h"
-#include "objects/comparison/start_single_view.h"
 #include "objects/initialisation.h"
 
 namespace hullslam {

@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "objects/validity.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "frame/detection/visible_part.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "objects/constraint/misfit.h"
 
 namespace hullslam {
+
+std::string ToString(ObjectRejection reason) {
+  static constexpr std::array<const char*, kObjectRejectionCount> kNames = {
+      "few_views",    "little_parallax",   "no_start",    "not_refined",
+      "not_in_front", "axes_out_of_range", "low_overlap", "off_points",
+      "stretched",    "large_misfit",      "elongated",   "part",
+      "seldom_seen",  "contradicted",      "fused"};
+  return kNames.at(static_cast<size_t>(reason));
+}
+
 namespace {
 
 constexpr size_t kMaxPoints = 300;  // largest number of depth points that are tested, about

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "objects/visibility.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "geometry/polyline.h"
+#include "map/keyframe_order.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr size_t kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden
@@ -248,6 +251,17 @@ bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_fro
                 });
   return samples >= kFewSamples &&
          static_cast<double>(behind) >= min_share * static_cast<double>(samples);
+}
+
+bool IsContradicted(const Map& map, const Sensor& sensor, KeyframeId current, ObjectId id,
+                    const ChangeOptions& options, Contradictions<ObjectId>& contradictions) {
+  const Keyframe& keyframe = map.keyframes().At(current);
+  const ObjectLandmark& object = map.objects().At(id);
+  const FrameId last_seen = FrameIdOf(map, LastObserver(map, object.observations));
+  return last_seen < keyframe.frame->id &&
+         SeesThrough(sensor, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
+                     options.min_seen_through) &&
+         contradictions.Add(id, last_seen) >= options.min_keyframes;
 }
 
 }  // namespace hullslam

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "optim/bundle_adjustment.h"
 
 #include <ceres/loss_function.h>
@@ -8,9 +9,10 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "costs/defined_cost.h"
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/reprojection.h"
 #include "estimators/keypoint_precision.h"
 #include "frame/measure_point.h"
@@ -22,9 +24,10 @@
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam {
+
 namespace {
 
 using internal::Supervision;
@@ -343,6 +346,16 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     KeepScale(map, window.fixed.front(), result);
   }
   return result;
+}
+
+IslandAdjustment AdjustIsland(const Map& map, IslandId island, const Sensor& sensor,
+                              const ObjectOptions& options, const Cancellation* cancellation,
+                              const ProgressCallback& on_progress) {
+  BundleWindow window = GlobalWindow(map, island, ObjectsToAdjust(options));
+  BundleResult result =
+      AdjustBundle(map, sensor, window, BundleOptions{.objects = options.bundle}.ForWholeMap(),
+                   cancellation, on_progress);
+  return {.result = std::move(result), .objects = std::move(window.objects)};
 }
 
 }  // namespace hullslam

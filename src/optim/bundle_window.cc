@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 
 namespace hullslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "objects/constraint/object_constraint.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam::internal {
 namespace {

@@ -9,13 +9,13 @@
 #include <memory>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_result.h"
 #include "optim/bundle_window.h"
 #include "optim/object_sum_cost.h"
-#include "util/id_map.h"
+#include "util/id_set.h"
 
 namespace hullslam::internal {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 
 namespace hullslam::internal {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/robust_rows.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_problem.h"

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "costs/manifolds.h"
 #include "costs/relative_similarity.h"
-#include "costs/similarity_manifold.h"
 #include "hullslam/util/check.h"
 #include "optim/supervision.h"
 

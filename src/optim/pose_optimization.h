@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "camera/pose_observation.h"
+#include "camera/point_measurement.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 

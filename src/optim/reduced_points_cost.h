@@ -8,7 +8,7 @@
 #include <deque>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "optim/eliminated_points.h"
 #include "optim/square_root_form.h"
 

@@ -7,7 +7,7 @@
 
 #include "optim/pose_problem.h"
 #include "optim/robust.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

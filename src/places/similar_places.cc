@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "util/id_set.h"
 
 namespace hullslam {

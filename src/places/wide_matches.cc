@@ -3,7 +3,6 @@
 
 #include "matching/by_descriptor.h"
 #include "util/id_set.h"
-#include "util/valid_ids.h"
 
 namespace hullslam {
 namespace {

@@ -45,4 +45,10 @@ struct LostStretch : FrameStretch {
 std::vector<LostStretch> FindLostStretches(std::span<const TrackedFrame> frames,
                                            std::span<const FrameNote> notes);
 
+// The stretches of frames whose poses are unsure (TrackedFrame::is_unsure), in order of time.
+// `frames` are the frames at the end of the run, and `notes` has one entry for each of them. A
+// frame without a pose at the end is not unsure but lost.
+std::vector<FrameStretch> FindUnsureStretches(std::span<const TrackedFrame> frames,
+                                              std::span<const FrameNote> notes);
+
 }  // namespace hullslam

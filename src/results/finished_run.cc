@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/text_rows.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
 #include "results/scene_file.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -12,7 +12,7 @@
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
 #include "report/object_results.h"
-#include "results/ply_points.h"
+#include "results/ply_file.h"
 #include "scene/scene.h"
 
 namespace hullslam {

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "files/json_file.h"
+#include "hullslam/geometry/rigid3.h"
+
 namespace hullslam {
 
 // Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0. Throws
@@ -26,5 +29,9 @@ std::string DumpLine(const nlohmann::ordered_json& json);
 // their own.
 std::string WithEntries(const nlohmann::ordered_json& head, const char* name,
                         const std::vector<std::string>& entries);
+
+// Reads a pose from an array [tx, ty, tz, qx, qy, qz, qw], in metres, and normalises the rotation.
+// Throws InputError that names the file and the value if the node is no such array.
+Rigid3 PoseOf(const JsonNode& node);
 
 }  // namespace hullslam

@@ -8,10 +8,9 @@
 
 #include "camera/wide_lens.h"
 #include "results/json_text.h"
-#include "results/object_file_version.h"
 #include "results/ply_file.h"
 #include "results/scene_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

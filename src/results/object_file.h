@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -9,6 +10,9 @@
 #include "scene/scene.h"
 
 namespace hullslam {
+
+// The version of the format of objects.json and objects_observations.json.
+inline constexpr uint32_t kObjectFileVersion = 2;
 
 // The objects of a run are in two files, so that the list of the objects stays small
 // (docs/outputs.md). Together they have everything that is needed to judge the shapes of the

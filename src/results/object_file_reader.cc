@@ -8,14 +8,12 @@
 
 #include "camera/wide_lens.h"
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/plausible.h"
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
-#include "results/json_pose.h"
+#include "results/json_text.h"
 #include "results/object_file.h"
-#include "results/object_file_version.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

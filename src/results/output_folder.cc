@@ -13,12 +13,11 @@
 #include <system_error>
 #include <utility>
 
-#include "files/canonical_path.h"
-#include "files/staging_folder.h"
-#include "files/synced_file.h"
+#include "files/paths.h"
+#include "files/staged_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

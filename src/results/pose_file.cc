@@ -17,7 +17,7 @@
 #include "files/plausible.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -5,10 +5,9 @@
 #include <map>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "files/plausible.h"
 #include "results/scene_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

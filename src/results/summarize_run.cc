@@ -16,7 +16,7 @@
 #include "hullslam/eval/rpe.h"
 #include "hullslam/settings/settings.h"
 #include "map/islands.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

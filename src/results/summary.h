@@ -11,7 +11,6 @@
 
 #include "hullslam/util/stage_timer.h"
 #include "report/lost_frames.h"
-#include "report/unsure_frames.h"
 
 namespace hullslam {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <iterator>
 
-#include "files/atomic_file.h"
 #include "files/plausible.h"
+#include "files/staged_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

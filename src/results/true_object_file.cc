@@ -5,8 +5,7 @@
 #include <string>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
-#include "results/json_pose.h"
+#include "results/json_text.h"
 
 namespace hullslam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "eval/true_object.h"
+#include "eval/object_groundtruth.h"
 
 namespace hullslam {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "util/fnv1a.h"
+#include "util/hash.h"
 
 namespace hullslam {
 namespace {

@@ -16,7 +16,7 @@
 #include "run/vocabularies.h"
 #include "settings/camera_file.h"
 #include "system/make_sensor.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

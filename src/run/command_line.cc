@@ -17,7 +17,7 @@
 
 #include "hullslam/util/error.h"
 #include "run/messages.h"
-#include "util/edit_distance.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
@@ -79,24 +80,6 @@ void AddAnyDatasetOptions(CLI::App& app, AnyDatasetArguments& arguments) {
   AddDatasetOptions(app, AllDatasetOptions(), arguments.choices);
 }
 
-std::vector<DatasetOption> OptionsOfImages() {
-  std::vector<DatasetOption> options = AllDatasetOptions();
-  std::erase_if(options, [](const DatasetOption& option) {
-    const std::string_view key = option.key;
-    return key != "image_topic" && key != "times" && key != "side_by_side";
-  });
-  return options;
-}
-
-DatasetHelp HelpOfAnyDataset() {
-  return {.sequence =
-              "what a SLAM program reads: a sequence of TUM, ICL-NUIM, EuRoC or KITTI, stereo "
-              "pairs, a recording of ROS, a video or a folder of images",
-          .settings = "default: those of the sequence; a video or a folder of images has none",
-          .associations = "stamp rgb stamp depth",
-          .groundtruth = "default: that of the sequence"};
-}
-
 OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& request) {
   OpenedDataset opened = OpenDataset(dataset, request);
   PrintWarnings(opened.settings.notes.warnings);
@@ -104,28 +87,17 @@ OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& re
 }
 
 OpenedDataset OpenAnyDataset(const AnyDatasetArguments& arguments, DatasetRequest request) {
-  AnyDatasetArguments given = arguments;
-  if (!given.sensor && !request.associations.empty()) {
-    given.sensor = SensorKind::kRgbd;
-  }
-  const FoundDataset found = FindDataset(request.path, given.sensor, given.choices);
-  request.sensor = found.sensor;
-  request.choices = given.choices;
-  return OpenDatasetLoudly(*found.dataset, request);
+  request.choices = arguments.choices;
+  OpenedDataset opened = OpenFoundDataset(arguments.sensor, std::move(request));
+  PrintWarnings(opened.settings.notes.warnings);
+  return opened;
 }
 
 std::optional<Trajectory> FindGroundtruth(const ImageSequence& sequence) {
-  try {
-    std::vector<std::string> notes;
-    std::optional<Trajectory> truth = ReadGroundtruth(sequence, &notes);
-    for (const std::string& note : notes) {
-      PrintError("warning: ground truth: {}\n", note);
-    }
-    return truth;
-  } catch (const InputError& error) {
-    PrintError("warning: {}; the run goes on without ground truth\n", error.what());
-    return std::nullopt;
-  }
+  std::vector<std::string> warnings;
+  std::optional<Trajectory> truth = TryGroundtruth(sequence, warnings);
+  PrintWarnings(warnings);
+  return truth;
 }
 
 }  // namespace hullslam

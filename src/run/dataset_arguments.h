@@ -33,12 +33,6 @@ struct AnyDatasetArguments {
 // Adds --mono, --rgbd, --stereo and the options of all data sets. `arguments` must outlive the app.
 void AddAnyDatasetOptions(CLI::App& app, AnyDatasetArguments& arguments);
 
-// The options that decide which images of the input are used, and what their names are.
-std::vector<DatasetOption> OptionsOfImages();
-
-// The help of SEQUENCE and of --settings for such a program.
-DatasetHelp HelpOfAnyDataset();
-
 // Opens a data set, and prints the warnings of its settings.
 OpenedDataset OpenDatasetLoudly(const Dataset& dataset, const DatasetRequest& request);
 

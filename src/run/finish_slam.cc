@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/finish_slam.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -9,32 +7,16 @@
 
 #include "datasets/run_files.h"
 #include "masks/mask_all.h"
+#include "results/run_report.h"
 #include "results/summary.h"
 #include "run/map_session.h"
 #include "run/messages.h"
 #include "run/more_outputs.h"
-#include "run/print_results.h"
 #include "run/program.h"
+#include "run/slam_run.h"
 
 namespace hullslam {
 namespace {
-
-// Adds the network of --segment and its times.
-void SummarizeNetwork(const EndedRun& run, RunSummary& summary) {
-  const NetworkMasks* const network = run.masks.network();
-  if (network == nullptr) {
-    return;
-  }
-  const NetworkMasks::Work work = network->work();
-  summary.provenance.network =
-      NetworkSummary{.path = network->path().string(),
-                     .hash = network->hash(),
-                     .every = network->every() > 0 ? std::optional(network->every()) : std::nullopt,
-                     .classes = network->class_names(),
-                     .images = work.times.Total("segment").count,
-                     .failures = work.failures};
-  summary.timing.stages_ms.merge(SummarizeStages(work.times));
-}
 
 // The path; absent if it is empty.
 std::optional<std::string> Given(const std::filesystem::path& path) {
@@ -85,7 +67,10 @@ RunSummary Summarize(const EndedRun& run) {
 
 RunSummary SummarizeAll(const EndedRun& run, const RunContent& content) {
   RunSummary summary = Summarize(run);
-  SummarizeNetwork(run, summary);
+  if (const NetworkMasks* const network = run.masks.network(); network != nullptr) {
+    summary.provenance.network = SummarizeNetwork(*network);
+    summary.timing.stages_ms.merge(SummarizeStages(network->work().times));
+  }
   if (run.masks.format()) {
     summary.objects = SummarizeObjects(content.objects, run.system.object_counts());
   }
@@ -143,7 +128,9 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
                             .trajectory = &content.trajectory,
                             .objects = &content.objects});
   if (!arguments.quiet) {
-    PrintResults(arguments, summary, content.objects);
+    Print("{}results are in {}\n",
+          DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),
+          arguments.output.string());
   }
   live.End(content.map, SummaryJson(summary));
   const std::string unreported =

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "datasets/run_files.h"
-#include "files/atomic_file.h"
-#include "files/canonical_path.h"
+#include "files/paths.h"
+#include "files/staged_file.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 

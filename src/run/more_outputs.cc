@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
 #include "util/components.h"

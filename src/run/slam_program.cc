@@ -11,11 +11,11 @@
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
 #include "run/interrupt.h"
-#include "run/live_output.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/slam_run.h"
 #include "run/tools/commands.h"
+#include "run/view_arguments.h"
 
 namespace hullslam {
 namespace {
@@ -111,10 +111,8 @@ int RunRun(int argc, char** argv) {
   if (!Parse(app, argc, argv)) {
     return kDone;
   }
-  if (!any.sensor && !arguments.associations.empty()) {
-    any.sensor = SensorKind::kRgbd;
-  }
-  const FoundDataset found = FindDataset(arguments.sequence, any.sensor, any.choices);
+  const FoundDataset found =
+      FindDataset(arguments.sequence, any.sensor, any.choices, arguments.associations);
   arguments.sensor = found.sensor;
   arguments.program = ProgramOf(*found.dataset, found.sensor);
   CheckSensorOptions(arguments);

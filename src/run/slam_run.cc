@@ -17,17 +17,16 @@
 #include "masks/mask_all.h"
 #include "results/output_folder.h"
 #include "run/dataset_arguments.h"
-#include "run/finish_slam.h"
 #include "run/interrupt.h"
-#include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/view_arguments.h"
 #include "run/vocabularies.h"
 #include "segmentation/frame_source.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {
@@ -155,8 +154,11 @@ void TrackFrames(const TrackedRun& run, const std::optional<InitialisationFailur
   size_t warnings = 0;
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
-    const Clock::duration waited =
-        run.live.BeforeFrame(frames, run.system, [&progress] { progress.Clear(); });
+    const Clock::duration waited = run.live.BeforeFrame(run.system, IsInterrupted, [&] {
+      progress.Clear();
+      frames.Pause();
+    });
+    frames.Resume();
     start += waited;
     progress.Skip(waited);
     std::optional<LoadedFrame> loaded = frames.Next();
@@ -176,7 +178,11 @@ void TrackFrames(const TrackedRun& run, const std::optional<InitialisationFailur
     const Clock::time_point begin = Clock::now();
     const TrackedFrame frame = frames.Track(*loaded);
     PrintNewWarnings(run.system, warnings, progress);
-    run.live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), run.system);
+    run.live.AfterFrame({.grey = loaded->grey,
+                         .number = result.given,
+                         .build_ms = loaded->build_ms,
+                         .track_ms = Milliseconds(Clock::now() - begin)},
+                        run.system);
     progress.Show(result.given, [&] { return DescribeState(frame.state, shown, run.system); });
   }
   frames.Finish();
@@ -314,7 +320,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   CheckSavedFiles(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
-  LiveOutput live(arguments, options, sequence, groundtruth);
+  LiveOutput live = OpenLiveOutput(arguments, options, sequence, groundtruth);
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
   WarnOfInput(arguments, options, sequence, masks);

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/system.h"
+#include "live/live_output.h"
+#include "results/output_folder.h"
+#include "results/summarize_run.h"
 #include "run/dataset_arguments.h"
+#include "run/mask_arguments.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
@@ -17,5 +25,21 @@ namespace hullslam {
 // if possible. `notes` are lines about the input, which are printed before the first frame.
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes);
+
+// A run whose frames have all been tracked and whose map is finished.
+struct EndedRun {
+  const RunArguments& arguments;
+  const LoadedSettings& settings;
+  const ImageSequence& sequence;
+  const SequenceMasks& masks;
+  const std::optional<Trajectory>& groundtruth;
+  const System& system;
+  const RunResult& result;
+  size_t earlier_sessions = 0;  // of the map that the run began with
+};
+
+// Writes the results of a run to its output folder, and its map, recording and report where they
+// are asked for. Prints the results, and why the run or a file failed. Returns the exit code.
+int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live);
 
 }  // namespace hullslam

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "hullslam/geometry/dual_quadric.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "scene/object_body.h"
 
 #include <algorithm>
@@ -7,12 +8,19 @@
 #include <numbers>
 #include <optional>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
-#include "geometry/sphere_directions.h"
 #include "objects/constraint/misfit.h"
 
 namespace hullslam {
+
+Eigen::Vector3d SphereDirection(int index, int count) {
+  const double z = 1.0 - (2.0 * index + 1.0) / count;
+  const double angle = index * std::numbers::pi * (3.0 - std::sqrt(5.0));
+  const double radius = std::sqrt(1.0 - z * z);
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
 namespace {
 
 constexpr int kSides = 48;  // sides of a footprint

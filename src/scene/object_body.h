@@ -13,6 +13,10 @@
 
 namespace hullslam {
 
+// The direction with this index (from 0) of `count` unit vectors that are evenly spread over the
+// sphere: a Fibonacci lattice. The first half of them has z > 0.
+Eigen::Vector3d SphereDirection(int index, int count);
+
 // The space that an object takes up, in an upright frame; relations are computed from it. This
 // frame has the origin and the unit of the world, and z upwards.
 struct ObjectBody {
@@ -36,7 +40,7 @@ struct ObjectBody {
 Eigen::Quaterniond UprightFromWorld(const Eigen::Vector3d& up);
 
 // The body of an object with the given observations. The silhouettes measure how far the object
-// reaches beyond its ellipsoid in each direction (objects/misfit.h), so the body of a box is less
+// reaches beyond its ellipsoid in each direction (misfit.h), so the body of a box is less
 // round than its ellipsoid. In directions that no observation has measured, it is the ellipsoid.
 ObjectBody MeasureBody(ObjectId id, const Ellipsoid& ellipsoid, const PinholeCamera& camera,
                        std::span<const ResolvedObservation> observations,

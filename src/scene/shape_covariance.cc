@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/sphere_directions.h"
 #include "hullslam/objects/object_constraint_options.h"
 #include "objects/constraint/misfit.h"
+#include "scene/object_body.h"
 
 namespace hullslam {
 namespace {

@@ -24,7 +24,7 @@ namespace hullslam {
 //   K(n, m) = e^2 (c(n, m) + c(n, -m)) + o^2 (c(n, m) - c(n, -m)).
 // The first term is the even part of the deviation, which boxes and cylinders have; it moves no
 // centre unless the object is seen from one side only. The second term is the odd part, such as a
-// handle. The variances e^2 and o^2 come from the measured excess of the lines (objects/misfit.h)
+// handle. The variances e^2 and o^2 come from the measured excess of the lines (misfit.h)
 // on opposite sides of the object. The fit takes up a part of the deviation: an odd one moves the
 // centre (three parameters), an even one changes size and rotation (six). So what is left is
 // divided by fewer degrees of freedom than there are independent directions.

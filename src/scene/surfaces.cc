@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

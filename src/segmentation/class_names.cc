@@ -11,11 +11,9 @@
 #include <map>
 #include <utility>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "util/ascii.h"
-#include "util/printable.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/decode_anchors.h"
-
 #include <Eigen/Core>
 #include <array>
+
+#include "segmentation/network_layout.h"
 
 namespace hullslam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "util/latest_maker.h"
+#include "util/latest_worker.h"
 #include "util/thread_priority.h"
 
 namespace hullslam {

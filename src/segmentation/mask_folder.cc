@@ -10,15 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "files/atomic_file.h"
-#include "files/canonical_path.h"
 #include "files/content_hash.h"
 #include "files/json_file.h"
-#include "files/staging_folder.h"
+#include "files/paths.h"
+#include "files/staged_file.h"
 #include "hullslam/masks/mask_source.h"
 #include "hullslam/util/error.h"
 #include "masks/yolo_text.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

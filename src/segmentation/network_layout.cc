@@ -9,11 +9,8 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "segmentation/decode_anchors.h"
-#include "segmentation/decode_cells.h"
-#include "segmentation/decode_rows.h"
 #include "segmentation/onnx_file.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

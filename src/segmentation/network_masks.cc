@@ -6,7 +6,7 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "masks/yolo_text.h"
-#include "sequences/frame_colour.h"
+#include "sequences/image_list.h"
 
 namespace hullslam {
 

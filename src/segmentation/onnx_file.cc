@@ -10,9 +10,7 @@
 #include "files/protobuf_reader.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
-#include "segmentation/onnx_graph.h"
-#include "util/counted.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -4,10 +4,37 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hullslam {
+
+// Begins the messages of readers of a file of ONNX.
+inline constexpr const char* kOnnxName = "the file";
+
+// The values of a repeated field of integers with this number (onnx/onnx.proto), which may be
+// packed.
+std::vector<int64_t> ReadIntegers(std::string_view message, uint64_t field);
+
+// What is read of a tensor in a file of ONNX, whose message there is a TensorProto.
+struct OnnxTensor {
+  std::string name;
+  std::vector<int64_t> shape;
+  std::optional<std::string> file;  // that has the values, if they are not in the message
+};
+
+// Throws InputError unless the tensor has as many values as its shape says: OpenCV does not count
+// them before it reads them.
+OnnxTensor ReadTensor(std::string_view message);
+
+// Looks through the graph of a network (a GraphProto) for what OpenCV would not notice before it
+// reads or writes memory that is not its own: tensors without their values, and attributes of nodes
+// that are out of range. Throws InputError with the name of the tensor or node. Adds the names of
+// the files that have values of tensors to `weight_files`.
+void CheckGraph(std::string_view graph, std::set<std::string>& weight_files);
 
 // An input or output of a network.
 struct OnnxValue {

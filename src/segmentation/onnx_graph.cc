@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/onnx_graph.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,8 @@
 
 #include "files/protobuf_reader.h"
 #include "hullslam/util/error.h"
-#include "segmentation/onnx_tensor.h"
-#include "util/printable.h"
+#include "segmentation/onnx_file.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/data_path.h"
+#include "files/paths.h"
 #include "hullslam/util/check.h"
 #include "segmentation/child_process.h"
 #include "segmentation/network_protocol.h"

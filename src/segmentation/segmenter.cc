@@ -12,16 +12,15 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_classes.h"
+#include "segmentation/candidate.h"
 #include "segmentation/class_names.h"
 #include "segmentation/instance_outline.h"
 #include "segmentation/letterbox.h"
 #include "segmentation/network_layout.h"
 #include "segmentation/onnx_file.h"
 #include "segmentation/open_network.h"
-#include "segmentation/suppress_overlaps.h"
 #include "util/components.h"
-#include "util/edit_distance.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {
@@ -118,6 +120,55 @@ CheckedFrame CheckFrame(const CheckedSource& checked, const FramePaths& paths,
   frame.result = checked.builder.Build(frame.masks.masks, frame.view.depth, {});
   CountDetections(frame.masks, frame.result, counts);
   return frame;
+}
+
+std::string DescribeCounts(const MaskStatistics& counts) {
+  std::string text;
+  const auto add = [&text](const std::string& name, size_t count) {
+    text += fmt::format("{:<24}{:>10}\n", name, count);
+  };
+  add("frames", counts.frames);
+  add("without image", counts.without_image);
+  add("without depth", counts.without_depth);
+  add("without masks", counts.without_masks);
+  add("  without file", counts.missing);
+  add("malformed", counts.faults.size());
+  add("instances", counts.instances);
+  add("kept", counts.detections);
+  add("  cut by the border", counts.cut);
+  add("rejected: crowd", counts.crowds);
+  add("rejected: no area", counts.without_area);
+  for (size_t i = 0; i < counts.rejections.size(); ++i) {
+    add("rejected: " + ToString(static_cast<DetectionRejection>(i)), counts.rejections[i]);
+  }
+  add("lines", counts.lines);
+  add("  one-sided", counts.one_sided);
+  return text;
+}
+
+std::string DescribeClasses(const MaskStatistics& counts) {
+  size_t width = std::string("class").size();
+  for (const auto& [label, of_class] : counts.classes) {
+    width = std::max(width, label.size());
+  }
+  std::string text = fmt::format("\n{:<{}}{:>12}{:>10}{:>12}\n", "class", width, "instances",
+                                 "kept", "mean score");
+  for (const auto& [label, of_class] : counts.classes) {
+    text +=
+        fmt::format("{:<{}}{:>12}{:>10}{:>12.2f}\n", label, width, of_class.instances,
+                    of_class.kept, of_class.score_sum / static_cast<double>(of_class.instances));
+  }
+  return text;
+}
+
+NetworkSummary SummarizeNetwork(const NetworkMasks& network) {
+  const NetworkMasks::Work work = network.work();
+  return {.path = network.path().string(),
+          .hash = network.hash(),
+          .every = network.every() > 0 ? std::optional(network.every()) : std::nullopt,
+          .classes = network.class_names(),
+          .images = work.times.Total("segment").count,
+          .failures = work.failures};
 }
 
 }  // namespace hullslam

@@ -14,6 +14,7 @@
 #include "frame/detection/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/segmentation/network_masks.h"
+#include "results/summary.h"
 
 namespace hullslam {
 
@@ -95,5 +96,12 @@ struct CheckedFrame {
 // masks do not fit the images; what was read is counted.
 CheckedFrame CheckFrame(const CheckedSource& checked, const FramePaths& paths,
                         const MaskFrame& names, bool with_image, MaskStatistics& counts);
+
+// A network and its work, for summary.json.
+NetworkSummary SummarizeNetwork(const NetworkMasks& network);
+
+// The counts as lines of text, and the table of classes.
+std::string DescribeCounts(const MaskStatistics& counts);
+std::string DescribeClasses(const MaskStatistics& counts);
 
 }  // namespace hullslam

@@ -10,8 +10,8 @@
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
-#include "settings/rotation_matrix.h"
-#include "util/shown_text.h"
+#include "settings/yaml_pose.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

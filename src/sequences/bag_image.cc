@@ -13,12 +13,11 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "hullslam/util/error.h"
-#include "images/eight_bits.h"
 #include "images/image_file.h"
 #include "images/rvl_depth.h"
-#include "util/printable.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -18,9 +18,8 @@
 #include "sequences/bag_image.h"
 #include "sequences/bag_topics.h"
 #include "sequences/image_list.h"
-#include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -13,9 +13,7 @@
 
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
-#include "util/ascii.h"
-#include "util/lower_case.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -16,10 +16,8 @@
 #include "images/image_file.h"
 #include "sequences/euroc_states.h"
 #include "sequences/image_list.h"
-#include "sequences/stereo_loading.h"
 #include "sequences/stereo_pairing.h"
-#include "settings/kalibr_camchain.h"
-#include "settings/yaml_lens.h"
+#include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
 

@@ -11,7 +11,7 @@
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sequences/icl_groundtruth.h"
 
 #include <fmt/format.h>
@@ -9,11 +10,26 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/mirror.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+
+Rigid3 MirrorY(const Rigid3& world_from_cam) {
+  // F R F is a rotation about the mirrored axis by the opposite angle, so the vector part (x, y, z)
+  // of the quaternion becomes (-x, y, -z).
+  const Eigen::Quaterniond& q = world_from_cam.rotation;
+  const Eigen::Vector3d& t = world_from_cam.translation;
+  return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), Eigen::Vector3d(t.x(), -t.y(), t.z())};
+}
+
+Trajectory MirrorY(Trajectory trajectory) {
+  for (StampedPose& pose : trajectory) {
+    pose.world_from_cam = MirrorY(pose.world_from_cam);
+  }
+  return trajectory;
+}
+
 namespace {
 
 // A frame with depth, and the pose that the ground truth gives it.

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "files/text_rows.h"
-#include "geometry/mirror.h"
 #include "hullslam/util/error.h"
 #include "sequences/icl_groundtruth.h"
 #include "sequences/image_list.h"

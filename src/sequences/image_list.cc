@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sequences/image_list.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,6 +190,22 @@ void CheckImageSize(const std::string& name, const cv::Mat& image, const Pinhole
     throw InputError(fmt::format("{}: {}x{} px, expected Camera.width x Camera.height, {}x{}", name,
                                  image.cols, image.rows, camera.width, camera.height));
   }
+}
+
+const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp) {
+  const auto difference = [timestamp](const FramePaths& frame) {
+    return std::abs(frame.timestamp - timestamp);
+  };
+  const auto nearest = std::ranges::min_element(sequence.frames, {}, difference);
+  return nearest != sequence.frames.end() && difference(*nearest) <= kSameMoment ? &*nearest
+                                                                                 : nullptr;
+}
+
+cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
+                   const PinholeCamera& camera) {
+  cv::Mat image = sequence.load_colour(frame);
+  CheckImageSize(frame.image.string(), image, camera);
+  return image;
 }
 
 }  // namespace hullslam

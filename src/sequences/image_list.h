@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "files/text_rows.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/sequences/image_sequence.h"
 
 namespace hullslam {
@@ -69,5 +71,18 @@ void LeaveOutMissing(ImageSequence& sequence);
 // Refuses an image that does not have the size of the camera. `name` names the image in the
 // message.
 void CheckImageSize(const std::string& name, const cv::Mat& image, const PinholeCamera& camera);
+
+// Time stamps that differ by at most this much are of the same moment, s: files round them.
+inline constexpr double kSameMoment = 1e-3;
+
+// The frame of the sequence whose time stamp is nearest to this one; null if that is of another
+// moment. It lives as long as the sequence.
+const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp);
+
+// The image of a frame in colour, CV_8UC3 with blue first, in raw pixels. A grey image has three
+// equal channels. To be called like ImageSequence::load. Throws InputError if the image cannot be
+// read or does not have the size of the camera.
+cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
+                   const PinholeCamera& camera);
 
 }  // namespace hullslam

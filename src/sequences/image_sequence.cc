@@ -136,4 +136,27 @@ std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
   return AsLoaded(sequence, std::move(file.poses));
 }
 
+std::optional<Trajectory> TryGroundtruth(const ImageSequence& sequence,
+                                         std::vector<std::string>& warnings) {
+  try {
+    std::vector<std::string> notes;
+    std::optional<Trajectory> truth = ReadGroundtruth(sequence, &notes);
+    for (const std::string& note : notes) {
+      warnings.push_back("ground truth: " + note);
+    }
+    return truth;
+  } catch (const InputError& error) {
+    warnings.push_back(error.what() + std::string("; the run goes on without ground truth"));
+    return std::nullopt;
+  }
+}
+
+std::vector<double> StampsOf(const ImageSequence& sequence) {
+  std::vector<double> stamps;
+  for (const FramePaths& frame : sequence.frames) {
+    stamps.push_back(frame.timestamp);
+  }
+  return stamps;
+}
+
 }  // namespace hullslam

@@ -10,11 +10,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "files/natural_order.h"
+#include "files/paths.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
-#include "util/ascii.h"
-#include "util/lower_case.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -17,14 +17,14 @@
 #include <utility>
 #include <vector>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/named_images.h"
-#include "sequences/stereo_loading.h"
+#include "sequences/stereo_pairing.h"
 
 namespace hullslam {
 namespace {

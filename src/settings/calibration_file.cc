@@ -10,10 +10,10 @@
 
 #include "camera/named_lens.h"
 #include "hullslam/util/error.h"
-#include "settings/basalt_calibration.h"
-#include "settings/yaml_lens.h"
+#include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
-#include "util/shown_text.h"
+#include "settings/yaml_pose.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -10,9 +10,7 @@
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 #include "settings/yaml_settings.h"
-#include "util/ascii.h"
-#include "util/edit_distance.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/option_table.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

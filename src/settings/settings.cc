@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "camera/named_lens.h"
-#include "files/data_path.h"
+#include "files/paths.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/calibration_file.h"
@@ -25,11 +25,8 @@
 #include "settings/stereo_settings.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_settings.h"
-#include "util/ascii.h"
-#include "util/fnv1a.h"
-#include "util/lower_case.h"
-#include "util/shown_text.h"
-#include "util/trim.h"
+#include "util/hash.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "camera/named_lens.h"
-#include "settings/basalt_calibration.h"
 #include "settings/calibration_file.h"
-#include "settings/kalibr_camchain.h"
-#include "settings/rotation_matrix.h"
+#include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
 #include "settings/yaml_pose.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

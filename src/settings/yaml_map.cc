@@ -11,11 +11,10 @@
 #include <cmath>
 #include <utility>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "util/ascii.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -11,7 +11,7 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/yaml_map.h"
-#include "util/shown_text.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

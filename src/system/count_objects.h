@@ -6,7 +6,7 @@
 
 #include "hullslam/frame/built_frame.h"
 #include "hullslam/system/system.h"
-#include "objects/rejection.h"
+#include "objects/validity.h"
 
 namespace hullslam {
 

@@ -56,4 +56,20 @@ bool FrameChooser::HasMaskMoved(const std::vector<LabelledBox>& boxes) const {
   });
 }
 
+ChosenViews ChooseViews(std::span<const double> stamps, const Trajectory& poses, double max_gap,
+                        const FrameChoice& choice,
+                        const std::function<std::vector<InstanceMask>(size_t)>& read_masks) {
+  ChosenViews chosen;
+  FrameChooser chooser(choice);
+  for (size_t i = 0; i < stamps.size(); ++i) {
+    const auto pose = InterpolatePose(poses, stamps[i], max_gap);
+    if (!pose) {
+      ++chosen.without_pose;
+    } else if (chooser.Choose(*pose, [&] { return read_masks(i); })) {
+      chosen.views.push_back({i, *pose});
+    }
+  }
+  return chosen;
+}
+
 }  // namespace hullslam

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/geometry/rigid3.h"
+#include "hullslam/geometry/trajectory.h"
 
 namespace hullslam {
 
@@ -46,5 +49,22 @@ class FrameChooser {
   std::optional<Rigid3> last_;           // the pose of the last chosen frame
   std::vector<LabelledBox> last_boxes_;  // around its masks
 };
+
+// A frame that is used for mapping.
+struct ChosenView {
+  size_t frame = 0;  // index in the sequence
+  Rigid3 world_from_cam;
+};
+
+struct ChosenViews {
+  std::vector<ChosenView> views;
+  size_t without_pose = 0;  // frames
+};
+
+// Chooses from the frames with these stamps, s. A pose is interpolated between two poses that are
+// at most `max_gap` apart, s. `read_masks` gives the masks of the frame with an index.
+ChosenViews ChooseViews(std::span<const double> stamps, const Trajectory& poses, double max_gap,
+                        const FrameChoice& choice,
+                        const std::function<std::vector<InstanceMask>(size_t)>& read_masks);
 
 }  // namespace hullslam

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "frame/wide_sensor.h"
+#include "frame/measure_point.h"
 #include "loop/island_join.h"
 #include "map/islands.h"
 

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <thread>
 
-#include "util/shared_tasks.h"
 #include "util/task_runner.h"
 
 namespace hullslam {

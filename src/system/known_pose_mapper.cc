@@ -8,16 +8,16 @@
 
 #include "camera/fit_depth.h"
 #include "frame/depth_source.h"
-#include "frame/detection/dynamic_mask.h"
 #include "frame/detection/frame_detector.h"
+#include "frame/detection/mask_region.h"
 #include "frame/input_check.h"
 #include "hullslam/util/check.h"
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "objects/object_mapper.h"
 #include "system/count_objects.h"
 #include "system/make_sensor.h"
 #include "system/pose_scale_check.h"
-#include "util/split_names.h"
+#include "util/text.h"
 
 namespace hullslam {
 struct KnownPoseMapper::State {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "loop/whole_map_adjustment.h"
+#include "loop/loop_correction.h"
 
 namespace hullslam {
 

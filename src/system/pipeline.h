@@ -6,15 +6,24 @@
 #include <memory>
 #include <vector>
 
+#include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_changes.h"
+#include "hullslam/system/options.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
-#include "objects/rejection.h"
-#include "system/pipeline_start.h"
+#include "objects/validity.h"
 
 namespace hullslam {
+
+// The initial state of a pipeline.
+struct PipelineStart {
+  Map map = {};          // of earlier sessions; a new map if it has no keyframes
+  Session session = {};  // the session of the keyframes of this run
+  // There are no keyframe requests, so nothing in the map is changed.
+  bool localization_only = false;
+};
 
 // Runs the stages: frames in, poses out. Made by MakeSequentialPipeline and MakeThreadedPipeline.
 class Pipeline {
@@ -60,5 +69,21 @@ class Pipeline {
   // See Mapper::left_islands. To be called after Finish, which fills it in.
   virtual const std::vector<std::shared_ptr<const Map>>& left_islands() const = 0;
 };
+
+// Does everything inside Track. The same frames and options give the same bits. `sensor` must
+// outlive the pipeline.
+std::unique_ptr<Pipeline> MakeSequentialPipeline(const Sensor& sensor,
+                                                 const SystemOptions& options);
+
+// The behaviour of Track with a keyframe while the mapper is still busy with an earlier one.
+enum class Pace {
+  kWaitForMapper,  // waits, so that no keyframe is dropped
+  kNeverWait,      // drops the keyframe, or if it is urgent, hurries the mapper, as in ORB-SLAM2
+};
+
+// Mapping runs in a thread of its own, so Track returns as soon as the frame has its pose. Results
+// depend on timing. `sensor` must outlive the pipeline.
+std::unique_ptr<Pipeline> MakeThreadedPipeline(const Sensor& sensor, const SystemOptions& options,
+                                               Pace pace);
 
 }  // namespace hullslam

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

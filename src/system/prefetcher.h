@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "util/mailbox.h"
+#include "util/between_threads.h"
 
 namespace hullslam {
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/sequential_pipeline.h"
-
 #include <exception>
 #include <utility>
 
 #include "hullslam/util/check.h"
 #include "loop/loop_closer.h"
-#include "loop/whole_map_adjustment.h"
+#include "loop/loop_correction.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
 #include "system/grow_map.h"
 #include "system/loop_stages.h"
+#include "system/pipeline.h"
 #include "tracking/tracker.h"
 
 namespace hullslam {

@@ -11,22 +11,20 @@
 #include <thread>
 #include <utility>
 
-#include "frame/detection/dynamic_mask.h"
+#include "frame/detection/mask_region.h"
 #include "frame/frame_builder.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "objects/known_sizes.h"
+#include "objects/object_extents.h"
 #include "system/compose_trajectory.h"
 #include "system/count_objects.h"
 #include "system/finish_run.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
-#include "system/sequential_pipeline.h"
-#include "system/threaded_pipeline.h"
 #include "tracking/remembered_frame.h"
-#include "util/split_names.h"
 #include "util/task_runner.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

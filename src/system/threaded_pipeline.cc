@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/threaded_pipeline.h"
-
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -15,9 +13,9 @@
 #include "system/grow_map.h"
 #include "system/loop_stages.h"
 #include "system/loop_threads.h"
+#include "system/pipeline.h"
 #include "tracking/tracker.h"
-#include "util/mailbox.h"
-#include "util/published.h"
+#include "util/between_threads.h"
 #include "util/thread_priority.h"
 
 namespace hullslam {

@@ -14,7 +14,7 @@
 #include "tracking/last_frame.h"
 #include "tracking/shutter_correction.h"
 #include "tracking/sources/confirmed_pose.h"
-#include "util/valid_ids.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/image_overlap.h"
-#include "util/median.h"
+#include "tracking/last_frame.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

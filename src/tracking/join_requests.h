@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
+#include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/relative_pose.h"
 #include "tracking/pose_refinement.h"
 
 namespace hullslam {

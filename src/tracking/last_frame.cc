@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "tracking/last_frame.h"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "hullslam/util/check.h"
 #include "util/id_set.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr double kMaxExtrapolation = 4.0;  // time step over the duration of the measured motion
@@ -69,6 +73,30 @@ std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
     return std::nullopt;
   }
   return PartOfMotion(last.motion->cam_from_last_cam, time_step / last.motion->duration);
+}
+
+double ShareInImage(const Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
+                    std::span<const LandmarkId> landmarks) {
+  size_t count = 0;
+  size_t inside = 0;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* const landmark = id.IsValid() ? map.landmarks().Find(id) : nullptr;
+    if (landmark == nullptr) {
+      continue;
+    }
+    ++count;
+    const Eigen::Vector3d point = cam_from_world * landmark->position;
+    const bool is_inside = point.z() > 0.0 && sensor.Sees(sensor.camera.Project(point));
+    inside += is_inside ? 1 : 0;
+  }
+  return count > 0 ? static_cast<double>(inside) / static_cast<double>(count) : 1.0;
+}
+
+double NextOverlap(const Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
+                   KeyframeId reference, const LastFrame& last) {
+  const std::vector<LandmarkId>& landmarks = map.keyframes().At(reference).landmarks;
+  return ShareInImage(map, sensor, cam_from_world, landmarks) +
+         ShareInImage(map, sensor, cam_from_world, last.landmarks) - 1.0;
 }
 
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "hullslam/frame/frame.h"
@@ -9,6 +10,20 @@
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
+
+// The part of the map that a frame is tracked against.
+struct LocalMap {
+  KeyframeId reference;               // the keyframe that shares most landmarks with the frame
+  std::vector<KeyframeId> keyframes;  // by increasing id
+  std::vector<LandmarkId> landmarks;  // by increasing id
+};
+
+// Selects at most `max_keyframes` keyframes: first those that observe most of the given landmarks,
+// then their neighbours in covisibility and spanning tree. If no keyframe observes any of the
+// landmarks, `last_reference` is used instead of the observers. The landmarks of the local map are
+// all landmarks that its keyframes observe.
+LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
+                        KeyframeId last_reference, size_t max_keyframes);
 
 // The largest radius within which a landmark of the local map is searched at its predicted pixel,
 // px at level 0: 4 px (Mur-Artal and Tardos 2017), three times, because first poses and depths are

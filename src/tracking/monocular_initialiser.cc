@@ -11,13 +11,13 @@
 #include "estimators/two_views.h"
 #include "frame/measure_point.h"
 #include "map/initial_map.h"
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
 #include "tracking/shutter_correction.h"
-#include "tracking/sources/pixel_pairs.h"
-#include "util/random_seed.h"
-#include "util/reached_by.h"
+#include "tracking/sources/pair_votes.h"
+#include "util/hash.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "frame/measure_point.h"
 #include "optim/corner_sigma.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

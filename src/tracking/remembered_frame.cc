@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "objects/constraint/object_constraint.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
-#include "util/thin.h"
-#include "util/valid_ids.h"
+#include "util/id_set.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

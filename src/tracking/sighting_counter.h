@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hullslam/map/messages.h"
-#include "util/id_map.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <utility>
 
-#include "frame/wide_sensor.h"
+#include "frame/measure_point.h"
 #include "map/islands.h"
-#include "tracking/image_overlap.h"
 #include "tracking/known_view.h"
+#include "tracking/last_frame.h"
 
 namespace hullslam {
 namespace {

@@ -11,9 +11,7 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "util/edit_distance.h"
-#include "util/shown_text.h"
-#include "util/trim.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

@@ -3,14 +3,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scene/answer.h"
 #include "scene/scene.h"
+#include "view/view_model.h"
 
 namespace hullslam {
+
+// One picture of several answers (CV_8UC3, blue first): a row per answer with its rank, class, id
+// and score, and with the cut-outs of the object with the outline of its mask. An object without
+// cut-outs has a row without them.
+cv::Mat DrawAnswers(std::span<const Answer> answers, const ViewModel& model);
 
 // A query for objects: by one of a question, `like`, `vector`, and `label` with `within` or either.
 struct SceneQuery {
@@ -29,6 +37,7 @@ std::vector<Answer> AskScene(const Scene& scene, const std::filesystem::path& so
                              const SceneQuery& query);
 
 std::string AnswersJson(const Scene& scene, const std::vector<Answer>& answers);
+std::string AnswersText(const Scene& scene, const std::vector<Answer>& answers);  // a table
 // Draws the answers, each with its best views, into an image file (.jpg or .png), which appears
 // complete or not at all. Throws InputError if the images of the run are not found.
 void WriteAnswerPicture(const std::filesystem::path& run, const std::vector<Answer>& answers,

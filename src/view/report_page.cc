@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "view/report_page.h"
 
 #include "hullslam/util/check.h"
-#include "view/page_template.h"
 #include "view/view_message.h"
 
 namespace hullslam {

@@ -13,9 +13,9 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
-#include "images/jpeg_codec.h"
-#include "sequences/frame_colour.h"
-#include "util/thin.h"
+#include "images/image_codecs.h"
+#include "sequences/image_list.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

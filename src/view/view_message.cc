@@ -1,17 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "view/view_message.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "files/base64.h"
 #include "results/json_text.h"
-#include "util/printable.h"
-#include "view/packed_array.h"
+#include "util/text.h"
 
 namespace hullslam {
+
+namespace {
+
+void AppendWord(std::string& bytes, uint32_t word) {
+  for (int shift = 0; shift < 32; shift += 8) {
+    bytes += static_cast<char>(word >> shift & 0xffu);
+  }
+}
+
+}  // namespace
+
+nlohmann::json PackArray(std::span<const float> values) {
+  std::string bytes;
+  bytes.reserve(4 * values.size());
+  for (const float value : values) {
+    AppendWord(bytes, std::bit_cast<uint32_t>(value));
+  }
+  return {{"f32", EncodeBase64(bytes)}};
+}
+
+nlohmann::json PackArray(std::span<const uint32_t> values) {
+  std::string bytes;
+  bytes.reserve(4 * values.size());
+  for (const uint32_t value : values) {
+    AppendWord(bytes, value);
+  }
+  return {{"u32", EncodeBase64(bytes)}};
+}
+
+nlohmann::json PackArray(std::span<const uint8_t> values) {
+  return {{"u8", EncodeBase64(std::string(values.begin(), values.end()))}};
+}
+
 namespace {
 
 using Json = nlohmann::json;
@@ -33,15 +68,6 @@ Json PackTimes(std::span<const double> timestamps, double start) {
     times.push_back(static_cast<float>(timestamp - start));
   }
   return PackArray(times);
-}
-
-std::vector<double> StampsOf(const Trajectory& poses) {
-  std::vector<double> timestamps;
-  timestamps.reserve(poses.size());
-  for (const StampedPose& pose : poses) {
-    timestamps.push_back(pose.timestamp);
-  }
-  return timestamps;
 }
 
 void Append(const Eigen::VectorXd& values, std::vector<float>& list) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bags/ros2_schemas.h"
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "files/read_file.h"
 #include "support/expect_error.h"
 #include "support/file_size_limit.h"

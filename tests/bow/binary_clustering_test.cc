@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/made_vocabulary.h"
-#include "util/parallel_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "hullslam/util/check.h"
 #include "support/made_vocabulary.h"
-#include "util/parallel_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

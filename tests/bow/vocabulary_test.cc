@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bow/vocabulary_layout.h"
+#include "bow/vocabulary_builder.h"
 #include "hullslam/util/check.h"
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "camera/wide_lens.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
+
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -207,4 +209,5 @@ TEST(KannalaBrandt, APinholeAsFisheyeIsThePinhole) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

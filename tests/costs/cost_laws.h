@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/residual_kind.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "costs/make_object_cost.h"
 #include "costs/object_cost_laws.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 namespace {

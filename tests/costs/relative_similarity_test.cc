@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "costs/similarity_manifold.h"
+#include "costs/manifolds.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

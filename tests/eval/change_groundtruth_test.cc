@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eval/change_groundtruth.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "eval/object_groundtruth.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -45,5 +45,13 @@ TEST(SummarizeQueries, SharesAreThoseOfAllQueries) {
   EXPECT_EQ(lines[3].max_ms, 9.0);
 }
 
+TEST(DescribeQueries, HasALineForEachOutcome) {
+  const std::vector<QueryResult> results = {
+      QueryResult{.found = std::nullopt, .milliseconds = 4.0}};
+  EXPECT_EQ(DescribeQuery(results[0]), "not found, 4.0 ms\n");
+  const std::string text = DescribeQueries(results);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+}
+
 }  // namespace
 }  // namespace hullslam

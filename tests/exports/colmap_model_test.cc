@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "files/byte_reader.h"
+#include "files/bytes.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/g2o_graph.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "camera/point_measurement.h"
+#include "exports/single_files.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

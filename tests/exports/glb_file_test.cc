@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/glb_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "files/byte_reader.h"
+#include "exports/single_files.h"
+#include "files/bytes.h"
 #include "support/made_export.h"
 
 namespace hullslam {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/pose_files.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
 
+#include "exports/single_files.h"
 #include "sequences/euroc_states.h"
 #include "support/temporary_folder.h"
 

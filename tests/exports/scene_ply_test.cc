@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exports/scene_ply.h"
-
 #include <gtest/gtest.h>
 
-#include "results/ply_points.h"
+#include "exports/single_files.h"
+#include "results/ply_file.h"
 #include "support/made_export.h"
 #include "support/temporary_folder.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "frame/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
+
 namespace {
 
 TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
@@ -59,5 +61,21 @@ TEST(MeasurePoint, OfAFisheyeHasTheErrorOfTheRawPixelAndItsDisparity) {
               std::hypot(0.2, 0.1) / sigma, 0.01);
 }
 
+TEST(WideSensor, PixelsAndDepthsAreLessPrecise) {
+  const SyntheticWorld world;
+  const FrameFeatures features = world.Observe(0).frame->features;
+  const Sensor wide = WithWideErrors(world.sensor());
+  for (const bool is_adjustment : {false, true}) {
+    const auto measure = [&](const Sensor& sensor) {
+      return MeasurePoint(sensor, features, 0,
+                          is_adjustment ? sensor.depth_error.ForAdjustment() : sensor.depth_error);
+    };
+    EXPECT_TRUE(measure(wide).inverse_sigma.isApprox(measure(world.sensor()).inverse_sigma /
+                                                     kWideErrorFactor));
+    EXPECT_EQ(measure(wide).measured, measure(world.sensor()).measured);
+  }
+}
+
 }  // namespace
+
 }  // namespace hullslam

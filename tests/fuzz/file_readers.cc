@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bow/vocabulary_layout.h"
+#include "bow/vocabulary_builder.h"
 #include "files/npy_file.h"
 #include "files/read_file.h"
 #include "fuzz/fuzzed_input.h"
@@ -22,23 +22,22 @@
 #include "hullslam/settings/preset.h"
 #include "hullslam/settings/settings.h"
 #include "images/image_file.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
-#include "map_files/map_parser.h"
+#include "map/keyframe_graph.h"
 #include "map_files/map_records.h"
 #include "map_files/vocabulary_text.h"
 #include "masks/mask_classes.h"
 #include "results/finished_run.h"
 #include "results/object_file.h"
-#include "results/ply_points.h"
+#include "results/ply_file.h"
 #include "results/pose_file.h"
 #include "results/scene_file.h"
 #include "results/true_object_file.h"
+#include "segmentation/candidate.h"
 #include "segmentation/class_names.h"
 #include "segmentation/instance_outline.h"
 #include "segmentation/network_layout.h"
 #include "segmentation/onnx_file.h"
-#include "segmentation/suppress_overlaps.h"
 
 namespace hullslam {
 namespace {

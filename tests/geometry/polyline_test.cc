@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace hullslam {
 namespace {
 
@@ -48,6 +50,10 @@ TEST(InterpolatePose, TakesThePoseOfAStampThatIsRoundedInAnotherWay) {
     ASSERT_TRUE(pose) << stamp;
     EXPECT_EQ(pose->translation.x(), 3.0);
   }
+}
+
+TEST(StampsOf, AreThoseOfThePoses) {
+  EXPECT_EQ(StampsOf({{1.5, {}}, {2.5, {}}}), (std::vector<double>{1.5, 2.5}));
 }
 
 }  // namespace

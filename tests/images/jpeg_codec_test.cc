@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "images/jpeg_codec.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
+
+#include "images/image_codecs.h"
 
 extern "C" {
 #include <jpeglib.h>
@@ -16,8 +16,6 @@ extern "C" {
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
-
-#include "images/png_codec.h"
 
 namespace hullslam {
 namespace {

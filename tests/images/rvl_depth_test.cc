@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "files/byte_writer.h"
+#include "files/bytes.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

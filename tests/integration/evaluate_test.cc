@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "hullslam/results/trajectory_file.h"
 #include "results/object_file.h"
 #include "results/summary.h"

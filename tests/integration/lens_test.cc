@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "files/read_text.h"
+#include "files/read_file.h"
 #include "hullslam/results/trajectory_file.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"

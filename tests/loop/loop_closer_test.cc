@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <string>
 
+#include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
 #include "loop/ring_islands.h"
 #include "loop/ring_things.h"
-#include "loop/whole_map_adjustment.h"
 #include "map/correction.h"
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 namespace hullslam {

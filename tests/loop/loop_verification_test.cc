@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "places/similar_places.h"
 #include "support/made_similarity.h"
 #include "support/ring_world.h"

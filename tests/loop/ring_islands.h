@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "map/correction.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_correction.h"
-#include "map/spanning_tree.h"
 #include "support/ring_world.h"
 
 namespace hullslam {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

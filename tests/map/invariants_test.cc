@@ -9,10 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 #include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"
 

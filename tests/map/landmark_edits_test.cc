@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "map/landmark_edits.h"
 
 #include <gtest/gtest.h>
@@ -13,15 +14,35 @@
 #include "map/made_map.h"
 
 namespace hullslam {
+
 namespace {
 
-// A descriptor whose first `count` bits are set.
+// A descriptor with the first `count` bits set.
 Descriptor FirstBits(int count) {
   Descriptor descriptor{};
   for (int i = 0; i < count; ++i) {
     descriptor[static_cast<size_t>(i / 64)] |= uint64_t{1} << (i % 64);
   }
   return descriptor;
+}
+
+size_t MostTypicalOf(const std::vector<int>& counts) {
+  std::vector<Descriptor> descriptors;
+  for (const int count : counts) {
+    descriptors.push_back(FirstBits(count));
+  }
+  return MostTypicalDescriptor(descriptors);
+}
+
+TEST(MostTypicalDescriptor, HasTheLeastMedianDistanceToTheOthers) {
+  EXPECT_EQ(MostTypicalOf({0, 10, 12, 14, 100}), 2u);
+  EXPECT_EQ(MostTypicalOf({200, 10, 11}), 1u);
+}
+
+TEST(MostTypicalDescriptor, TiesGoToTheFirst) {
+  EXPECT_EQ(MostTypicalOf({5, 9}), 0u);
+  EXPECT_EQ(MostTypicalOf({3, 3, 3}), 0u);
+  EXPECT_EQ(MostTypicalOf({}), 0u);
 }
 
 // The descriptor chosen for a landmark whose observations have these descriptors.
@@ -125,4 +146,5 @@ TEST_F(ViewingGeometry, DirectionIsTheMeanOfUnitVectors) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "hullslam/map/map.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

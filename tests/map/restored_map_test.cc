@@ -9,12 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
-#include "map/spanning_tree.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

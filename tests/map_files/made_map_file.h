@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hullslam/map_files/map_file.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 // Maps and settings for tests of map files.

@@ -10,10 +10,10 @@
 #include <numbers>
 
 #include "map/invariants.h"
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 
 namespace hullslam {

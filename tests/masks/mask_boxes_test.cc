@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_boxes.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "masks/mask_fixture.h"
+#include "masks/mask_format.h"
 #include "support/test_data.h"
 
 namespace hullslam {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_json_folder.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "masks/mask_fixture.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_label_png.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "masks/mask_fixture.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 namespace {

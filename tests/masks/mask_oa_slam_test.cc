@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "masks/mask_oa_slam.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "masks/mask_fixture.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 namespace {

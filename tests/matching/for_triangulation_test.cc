@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/epipolar.h"
+#include "geometry/triangulation.h"
 #include "matching/made_features.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"

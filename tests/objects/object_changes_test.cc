@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "objects/made_objects.h"
 #include "objects/object_mapper.h"
 

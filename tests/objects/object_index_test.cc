@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/made_objects.h"
 #include "objects/resolved_observation.h"

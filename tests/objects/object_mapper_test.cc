@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "map/invariants.h"
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "objects/validity.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
 #include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {
+
 namespace {
+
+TEST(ObjectRejection, EveryReasonHasAName) {
+  std::set<std::string> names;
+  for (int i = 0; i < kObjectRejectionCount; ++i) {
+    names.insert(ToString(static_cast<ObjectRejection>(i)));
+  }
+  EXPECT_EQ(names.size(), static_cast<size_t>(kObjectRejectionCount));
+  EXPECT_EQ(ToString(ObjectRejection::kFewKeyframes), "few_views");
+  EXPECT_EQ(ToString(ObjectRejection::kFused), "fused");
+}
 
 class Validity : public ::testing::Test {
  protected:
@@ -212,4 +225,5 @@ TEST_F(Validity, TheMisfitIsComparedWithTheSizeOfTheMasks) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

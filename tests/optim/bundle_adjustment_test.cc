@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "optim/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@
 #include "support/unknown_points.h"
 
 namespace hullslam {
+
 namespace {
 
 std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
@@ -512,4 +514,5 @@ TEST_F(BundleAdjustment, OfAnEmptyWindowIsEmpty) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

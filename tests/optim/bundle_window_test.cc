@@ -7,9 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "costs/pose_manifold.h"
+#include "costs/manifolds.h"
 #include "costs/reprojection.h"
 #include "optim/made_points.h"
-#include "util/chi_square.h"
+#include "util/statistics.h"
 
 namespace hullslam::internal {
 namespace {

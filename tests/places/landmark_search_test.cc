@@ -7,7 +7,7 @@
 #include <set>
 
 #include "frame/measure_point.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "support/random_geometry.h"
 #include "support/ring_world.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "support/made_vocabulary.h"
 

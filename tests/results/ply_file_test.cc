@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "results/ply_file.h"
 
 #include <gtest/gtest.h>
@@ -6,13 +7,103 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
 namespace hullslam {
+
 namespace {
+
+const std::vector<Eigen::Vector3d> kLandmarks = {{1.0, 2.0, 3.0}, {-4.0, 0.5, 6.0}};
+const std::vector<Eigen::Vector3d> kCentres = {{0.0, 0.0, 0.25}};
+
+TEST(PlyPoints, AreThoseThatWereWritten) {
+  const TemporaryFolder folder;
+  const PlyPoints points =
+      ReadPlyPoints(folder.Write("map.ply", FormatMapPly(kLandmarks, kCentres)));
+  ASSERT_EQ(points.positions.size(), 3u);
+  EXPECT_EQ(points.positions[1], Eigen::Vector3f(-4.0f, 0.5f, 6.0f));
+  EXPECT_EQ(points.positions[2], Eigen::Vector3f(0.0f, 0.0f, 0.25f));
+  EXPECT_EQ(points.colours[0][0], points.colours[0][2]);  // landmarks are grey
+  EXPECT_GT(points.colours[2][0], points.colours[2][2]);  // cameras are orange
+  EXPECT_EQ(points.left_out, 0u);
+}
+
+TEST(PlyPoints, LandmarksComeWithoutTheCentresOfKeyframes) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("map.ply", FormatMapPly(kLandmarks, kCentres));
+  EXPECT_EQ(ReadMapLandmarks(path).positions.size(), kLandmarks.size());
+  EXPECT_EQ(ReadMapLandmarks(folder.Write("b.ply", FormatMapPly({}, kCentres))).colours.size(), 0u);
+}
+
+TEST(PlyPoints, ImplausiblePositionsAreCounted) {
+  const TemporaryFolder folder;
+  const std::vector<Eigen::Vector3d> landmarks = {
+      {0.0, 0.0, 1.0}, {std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0}, {1e7, 0.0, 0.0}};
+  const PlyPoints points = ReadPlyPoints(folder.Write("map.ply", FormatMapPly(landmarks, {})));
+  EXPECT_EQ(points.positions.size(), 1u);
+  EXPECT_EQ(points.left_out, 2u);
+}
+
+TEST(PlyPoints, BrokenFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string good = FormatMapPly(kLandmarks, kCentres);
+  const auto expect_refusal = [&](const std::string& content, const char* reason) {
+    const auto path = folder.Write("bad.ply", content);
+    ExpectInputError([&] { ReadPlyPoints(path); }, {"bad.ply", reason});
+  };
+  expect_refusal("", "expected a binary");
+  expect_refusal("solid\n", "expected a binary");
+  expect_refusal(good.substr(0, 60), "expected a binary");
+  expect_refusal(good.substr(0, good.size() - 1), "cut off");
+  std::string many = good;
+  many.replace(many.find("vertex 3"), 8, "vertex 999999999999");
+  expect_refusal(many, "cut off");
+  many.replace(many.find("vertex 999999999999"), 19, "vertex 99999999999999999999999");
+  expect_refusal(many, "expected a binary");
+}
+
+TEST(PlyWriter, ReadsBackWhatItWrote) {
+  const TemporaryFolder folder;
+  PlyWriter file;
+  file.AddPoint({1.0, -2.0, 3.0}, {10, 20, 30});
+  const Rigid3 pose(ExpSo3({0.0, 0.0, 1.5707963267948966}), {5.0, 0.0, 0.0});
+  const TriangleMesh triangle{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {{0, 1, 2}}};
+  file.AddMesh(triangle, pose, {2.0, 3.0, 4.0}, {1, 2, 3});
+  const PlyPoints read = ReadPlyPoints(folder.Write("a.ply", file.MeshFile()));
+  ASSERT_EQ(read.positions.size(), 4U);
+  EXPECT_EQ(read.positions[0], Eigen::Vector3f(1.0f, -2.0f, 3.0f));
+  EXPECT_EQ(read.colours[0], (Colour{10, 20, 30}));
+  // Stretched to (2, 0, 0), turned to (0, 2, 0), and moved.
+  EXPECT_TRUE(read.positions[1].isApprox(Eigen::Vector3f(5.0f, 2.0f, 0.0f), 1e-6f));
+  EXPECT_EQ(read.colours[3], (Colour{1, 2, 3}));
+}
+
+TEST(PlyWriter, FacesPointToTheVerticesOfTheirMesh) {
+  PlyWriter file;
+  file.AddPoint({0.0, 0.0, 0.0}, {});
+  const TriangleMesh triangle{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {{0, 1, 2}}};
+  file.AddMesh(triangle, {}, {1.0, 1.0, 1.0}, {});
+  file.AddMesh(triangle, {}, {1.0, 1.0, 1.0}, {});
+  const std::string text = file.MeshFile();
+  EXPECT_NE(text.find("element face 2\n"), std::string::npos);
+  int32_t corners[3];
+  std::memcpy(corners, text.data() + text.size() - sizeof(corners), sizeof(corners));
+  EXPECT_EQ(corners[0], 4);
+  EXPECT_EQ(corners[2], 6);
+}
+
+TEST(PlyWriter, OnlyAFileOfMeshesHasAListOfFaces) {
+  const PlyWriter file;
+  EXPECT_NE(file.MeshFile().find("element face 0\n"), std::string::npos);
+  EXPECT_EQ(file.PointFile().find("face"), std::string::npos);
+}
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -119,4 +210,5 @@ TEST(ObjectsPly, CandidatesAreLeftOut) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

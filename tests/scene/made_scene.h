@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "map/spanning_tree.h"
+#include "map/keyframe_graph.h"
 #include "objects/made_objects.h"
 #include "report/object_results.h"
 #include "scene/scene.h"

@@ -25,6 +25,7 @@ class CheckTestMirrorTest(unittest.TestCase):
         self.assertEqual(faults_of({
             HEADER: "", TEST: BODY,
             "src/run/scene.h": "", "tests/run/scene_test.cc": "TEST_F(S, T) {}\n",
+            "src/run/parts.cc": "", "tests/run/parts_test.cc": BODY,
             "src/run/untested.h": "",
             "tests/integration/run_test.cc": "", "tests/consumer/any_test.cc": ""}), [])
 

@@ -15,16 +15,9 @@ class Extension:
     edits: dict  # of edited files: name -> [(text before, inserted text, text behind)]
 
 
-MASKS = Extension("a mask format", 2, {
-    "src/masks/mask_scratch.h": HEAD + """#pragma once
+MASKS = Extension("a mask format", 3, {
+    "src/masks/mask_scratch.cc": HEAD + """#include "masks/mask_checks.h"
 #include "masks/mask_format.h"
-namespace hullslam {
-// Format scratch: `<stem>.txt` with lines `class x y size`, a square in pixels.
-extern const MaskFormat kScratchFormat;
-}  // namespace hullslam
-""",
-    "src/masks/mask_scratch.cc": HEAD + """#include "masks/mask_scratch.h"
-#include "masks/mask_checks.h"
 #include "masks/mask_text.h"
 namespace hullslam {
 namespace {
@@ -51,9 +44,11 @@ std::unique_ptr<MaskSource> OpenScratch(const MaskRequest& request) {
 const MaskFormat kScratchFormat = {.name = "scratch", .is_meant = IsScratch, .open = OpenScratch};
 }  // namespace hullslam
 """}, {
-    "src/masks/open_masks.cc": [
-        ('#include "masks/mask_probe.h"\n', '#include "masks/mask_scratch.h"\n', ""),
-        ("&kBoxesFormat", ", &kScratchFormat", "")],
+    "src/masks/mask_format.h": [
+        ("extern const MaskFormat kBoxesFormat;\n",
+         "// Format scratch: `<stem>.txt` with lines `class x y size`, a square in pixels.\n"
+         "extern const MaskFormat kScratchFormat;\n", "")],
+    "src/masks/open_masks.cc": [("&kBoxesFormat", ", &kScratchFormat", "")],
     "docs/masks.md": [
         ("YOLO's boxes in shares |\n", "| `scratch` | folder | `<stem>.txt` | `class x y size`, pixels |\n",
          "")]})
@@ -101,8 +96,8 @@ std::string WriteScratch(const ExportOptions& options, ExportInput& input);
 }  // namespace hullslam
 """,
     "src/exports/export_scratch.cc": HEAD + """#include "exports/export_scratch.h"
-#include "files/atomic_file.h"
-#include "util/counted.h"
+#include "files/staged_file.h"
+#include "util/text.h"
 namespace hullslam {
 std::string WriteScratch(const ExportOptions& options, ExportInput& input) {
   WriteFileAtomically(options.output, std::to_string(input.model.trajectory.size()));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/decode_rows.h"
-
 #include <gtest/gtest.h>
+
+#include "segmentation/network_layout.h"
 
 namespace hullslam {
 namespace {

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "segmentation/decode_anchors.h"
-#include "segmentation/decode_cells.h"
-#include "segmentation/decode_rows.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

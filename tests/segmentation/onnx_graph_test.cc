@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/onnx_graph.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 #include <vector>
 
+#include "segmentation/onnx_file.h"
 #include "support/expect_error.h"
 #include "support/made_network.h"
 

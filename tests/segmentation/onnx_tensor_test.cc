@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segmentation/onnx_tensor.h"
-
 #include <gtest/gtest.h>
 
+#include "segmentation/onnx_file.h"
 #include "support/expect_error.h"
 #include "support/made_network.h"
 

@@ -76,6 +76,26 @@ TEST(ReadGroundtruth, ConvertedPosesReplaceTheFile) {
   ExpectInputError([&] { ReadGroundtruth(sequence); }, {"none.txt", "No such file"});
 }
 
+TEST(TryGroundtruth, WarnsOfAFileThatCannotBeUsed) {
+  const TemporaryFolder folder;
+  ImageSequence sequence;
+  std::vector<std::string> warnings;
+  EXPECT_FALSE(TryGroundtruth(sequence, warnings).has_value());
+  sequence.groundtruth = folder.Write("groundtruth.txt", "7 1 2 3 0 0 0 1\n");
+  EXPECT_TRUE(TryGroundtruth(sequence, warnings).has_value());
+  EXPECT_TRUE(warnings.empty());
+  sequence.groundtruth = folder.path() / "none.txt";
+  EXPECT_FALSE(TryGroundtruth(sequence, warnings).has_value());
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].ends_with("; the run goes on without ground truth")) << warnings[0];
+}
+
+TEST(StampsOf, AreThoseOfTheFrames) {
+  ImageSequence sequence;
+  sequence.frames = {{1.5, "a.png"}, {2.5, "b.png"}};
+  EXPECT_EQ(StampsOf(sequence), (std::vector<double>{1.5, 2.5}));
+}
+
 TEST(AddWarp, StepsAreDoneInTheirOrder) {
   ImageSequence sequence;
   const auto add = [&](const Eigen::Vector3d& axis, double scale, double offset, cv::Size before) {

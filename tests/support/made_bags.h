@@ -14,11 +14,10 @@
 #include <string_view>
 #include <vector>
 
-#include "bags/cdr_writer.h"
 #include "bags/decompress.h"
-#include "bags/field_reader.h"
 #include "bags/mcap_bag.h"
-#include "files/byte_writer.h"
+#include "bags/message_fields.h"
+#include "files/bytes.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string>
 
-#include "exports/export_model.h"
+#include "exports/export_input.h"
 
 namespace hullslam {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "files/text_rows.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

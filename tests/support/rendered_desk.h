@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "files/staging_folder.h"
+#include "files/staged_file.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"

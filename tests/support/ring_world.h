@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bow/train_vocabulary.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"

@@ -18,9 +18,9 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/map.h"
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

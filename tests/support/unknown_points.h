@@ -6,7 +6,7 @@
 #include "frame/keypoint_grid.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

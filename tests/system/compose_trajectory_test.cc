@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "hullslam/geometry/trajectory.h"
 #include "support/square_mask.h"
 
 namespace hullslam {
@@ -52,6 +53,19 @@ TEST_F(ViewChooserTest, MasksAreReadOnlyIfTheyMatter) {
   EXPECT_EQ(reads_, 1);
   Choose(0.03, {});
   EXPECT_EQ(reads_, 2);
+}
+
+TEST(ChooseViews, LeavesFramesWithoutAPoseOut) {
+  const Trajectory poses = {{1.0, Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.0})},
+                            {2.0, Rigid3(Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0})}};
+  const ChosenViews chosen =
+      ChooseViews(std::vector<double>{0.5, 1.0, 1.05, 1.5, 2.5}, poses, 1.0, {.min_distance = 0.1},
+                  [](size_t) { return std::vector<InstanceMask>(); });
+  EXPECT_EQ(chosen.without_pose, 2U);
+  ASSERT_EQ(chosen.views.size(), 2U);
+  EXPECT_EQ(chosen.views[0].frame, 1U);
+  EXPECT_EQ(chosen.views[1].frame, 3U);
+  EXPECT_EQ(chosen.views[1].world_from_cam.translation.x(), 0.5);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "support/ring_world.h"
 #include "system/compose_trajectory.h"
 #include "system/pipeline.h"
-#include "system/sequential_pipeline.h"
 
 namespace hullslam {
 

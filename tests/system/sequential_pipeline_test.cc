@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/sequential_pipeline.h"
-
 #include <gtest/gtest.h>
 
 #include "hullslam/util/check.h"
 #include "map/made_map.h"
+#include "system/pipeline.h"
 #include "system/pipeline_cases.h"
 #include "system/ring_path.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/threaded_pipeline.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
+#include "system/pipeline.h"
 #include "system/pipeline_cases.h"
 #include "system/ring_path.h"
 

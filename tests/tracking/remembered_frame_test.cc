@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "map/spanning_tree.h"
-#include "objects/constraint/raw_lines.h"
+#include "map/keyframe_graph.h"
+#include "objects/constraint/misfit.h"
 #include "objects/made_objects.h"
 #include "support/fisheye_camera.h"
 #include "support/pose_distance.h"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <variant>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "mapping/keyframe_insertion.h"
 #include "objects/made_objects.h"

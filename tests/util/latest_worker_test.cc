@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "util/latest_worker.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <vector>
 
 namespace hullslam {
+
 namespace {
 
 // A worker that records its tasks and stays in the first one until the test releases it.
@@ -129,5 +131,32 @@ TEST(LatestWorker, AnExceptionEndsTheWorkAndReachesTheCallerEveryTime) {
   EXPECT_EQ(done, std::vector<int>{1});
 }
 
+TEST(LatestMaker, KeepsAllResultsUntilTheyAreTaken) {
+  LatestMaker<int, int> maker([](int task) { return 10 * task; });
+  EXPECT_TRUE(maker.TakeResults().empty());
+  for (const int task : {1, 2, 3}) {
+    maker.Post(task);
+    maker.WaitUntilIdle();
+    EXPECT_FALSE(maker.IsBusy());
+  }
+  EXPECT_EQ(maker.TakeResults(), (std::vector<int>{10, 20, 30}));
+  EXPECT_TRUE(maker.TakeResults().empty());
+}
+
+TEST(LatestMaker, ThrowsWhatMakingThrows) {
+  LatestMaker<int, int> maker([](int task) -> int {
+    if (task == 2) {
+      throw std::runtime_error("two");
+    }
+    return task;
+  });
+  maker.Post(1);
+  maker.WaitUntilIdle();
+  maker.Post(2);
+  maker.WaitUntilIdle();
+  EXPECT_THROW(maker.TakeResults(), std::runtime_error);
+}
+
 }  // namespace
+
 }  // namespace hullslam

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "view/report_page.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "support/made_view.h"
-#include "view/page_template.h"
 #include "view/view_message.h"
 
 namespace hullslam {
+
 namespace {
 
 TEST(ReportPage, IsOneSmallFileWithoutAddresses) {
@@ -31,5 +33,14 @@ TEST(ReportPage, TheDataAreInTheirElement) {
   EXPECT_EQ(nlohmann::json::parse(message)["set"]["objects"][0]["class"], "</script>");
 }
 
+TEST(PageTemplate, HasOnePlaceForTheData) {
+  const std::string_view page = PageTemplate();
+  const size_t at = page.find("@DATA@");
+  ASSERT_NE(at, std::string_view::npos);
+  EXPECT_EQ(page.find("@DATA@", at + 1), std::string_view::npos);
+  EXPECT_TRUE(page.ends_with("</html>\n"));
+}
+
 }  // namespace
+
 }  // namespace hullslam

@@ -10,7 +10,7 @@
 
 #include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

@@ -13,7 +13,7 @@
 #include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
 #include "synthetic/object_models.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

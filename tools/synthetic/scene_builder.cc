@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "synthetic/texture_painter.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

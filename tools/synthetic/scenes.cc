@@ -19,7 +19,7 @@
 #include "synthetic/room.h"
 #include "synthetic/scene_builder.h"
 #include "synthetic/twins.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

@@ -13,13 +13,13 @@
 #include <thread>
 #include <vector>
 
-#include "images/png_codec.h"
+#include "images/image_codecs.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_files.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

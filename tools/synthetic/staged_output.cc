@@ -5,8 +5,8 @@
 
 #include <system_error>
 
-#include "files/canonical_path.h"
-#include "files/staging_folder.h"
+#include "files/paths.h"
+#include "files/staged_file.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam::synthetic {

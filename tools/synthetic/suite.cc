@@ -17,7 +17,7 @@
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_writer.h"
 #include "synthetic/teddy_room.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam::synthetic {
 namespace {

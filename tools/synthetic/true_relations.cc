@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "scene/object_body.h"
 #include "synthetic/shape.h"
 

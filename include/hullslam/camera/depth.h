@@ -11,7 +11,7 @@ namespace hullslam {
 // The model of the error of a keypoint with depth.
 enum class DepthErrorModel {
   kDisparity,    // pixel and disparity have independent errors
-  kRightColumn,  // the columns of a virtual stereo pair have (src/camera/right_column.h)
+  kRightColumn,  // the columns of a virtual stereo pair have (src/camera/point_measurement.h)
 };
 
 // The rules for the weights of points in bundle adjustment (src/optim/bundle_options.h).

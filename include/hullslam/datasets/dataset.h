@@ -99,6 +99,10 @@ std::span<const Dataset> Datasets();
 
 // The options of all data sets, each once.
 std::vector<DatasetOption> AllDatasetOptions();
+// Those that decide which images of the input are used, and what their names are.
+std::vector<DatasetOption> OptionsOfImages();
+// The texts for --help of a program that reads every data set.
+DatasetHelp HelpOfAnyDataset();
 
 // The data set of the program SENSOR_NAME, such as rgbd_tum. Throws InputError if there is none.
 const Dataset& DatasetOfProgram(std::string_view program, SensorKind sensor);
@@ -121,14 +125,19 @@ struct FoundDataset {
 // whose error tells what it expects. Throws InputError if nothing is at the path.
 FoundDataset FindDataset(const std::filesystem::path& path,
                          std::optional<SensorKind> sensor = std::nullopt);
-// The same for a data set that is to be opened with these choices. One of them may tell the sensor.
-// Throws InputError for choices that the data set does not have.
+// The same for a data set that is to be opened with these choices and this file of associations,
+// which may be empty. They may tell the sensor. Throws InputError for choices that the data set
+// does not have.
 FoundDataset FindDataset(const std::filesystem::path& path, std::optional<SensorKind> sensor,
-                         const DatasetChoices& choices);
+                         const DatasetChoices& choices,
+                         const std::filesystem::path& associations = {});
 
 // Opens a data set of this kind: reads the settings, resizes the images if the settings ask for it,
 // and checks some pairs of a stereo camera (PairCheck). Throws InputError for bad input.
 OpenedDataset OpenDataset(const Dataset& dataset, const DatasetRequest& request);
+// Finds the data set at the path of the request, and opens it. The sensor of the request is not
+// used.
+OpenedDataset OpenFoundDataset(const std::optional<SensorKind>& sensor, DatasetRequest request);
 
 // Opens the images of whatever is at the path; see Dataset::open_images. Throws InputError.
 ImageSequence OpenImages(const std::filesystem::path& path, const DatasetChoices& choices = {});

@@ -4,15 +4,25 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hullslam/eval/association.h"
-#include "hullslam/eval/error_statistics.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
+
+// Statistics of a list of errors, in the unit of the errors; all zero for an empty list.
+struct ErrorStatistics {
+  double rmse = 0.0;
+  double mean = 0.0;
+  double median = 0.0;  // for an even count the mean of the two middle errors
+  double max = 0.0;
+};
+
+ErrorStatistics SummarizeErrors(std::vector<double> errors);
 
 struct AteOptions {
   AlignmentKind alignment = AlignmentKind::kSe3;

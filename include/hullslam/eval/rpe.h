@@ -8,7 +8,6 @@
 
 #include "hullslam/eval/association.h"
 #include "hullslam/eval/ate.h"
-#include "hullslam/eval/error_statistics.h"
 #include "hullslam/geometry/trajectory.h"
 
 namespace hullslam {

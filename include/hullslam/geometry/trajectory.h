@@ -26,4 +26,7 @@ std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double times
 // The poses of another camera that is fixed to the camera of the trajectory.
 Trajectory OfOtherCamera(Trajectory trajectory, const Rigid3& cam_from_other);
 
+// The time stamps of the poses, s.
+std::vector<double> StampsOf(const Trajectory& trajectory);
+
 }  // namespace hullslam

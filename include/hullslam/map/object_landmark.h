@@ -29,7 +29,7 @@ struct ObjectObservation {
 };
 
 // The distance by which the real object reaches beyond its quadric in one direction, measured by
-// one line of one keyframe (objects/misfit.h). An object keeps hundreds of samples, so they have
+// one line of one keyframe (misfit.h). An object keeps hundreds of samples, so they have
 // single precision.
 struct MisfitSample {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitX();  // outwards, object frame, unit

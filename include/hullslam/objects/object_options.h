@@ -129,7 +129,7 @@ struct ChangeOptions {
   void Bind(const OptionScope& scope);
 };
 
-// The measurement of the misfit of an object; see objects/misfit.h.
+// The measurement of the misfit of an object; see misfit.h.
 struct MisfitOptions {
   int views = 40;      // number of latest keyframes that samples are taken from
   double width = 4.0;  // degrees, sigma of the Gaussian weights of the samples

@@ -105,11 +105,18 @@ Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);
 // The inverse of AsRead().
 Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses);
 
+// The time stamps of the frames, s.
+std::vector<double> StampsOf(const ImageSequence& sequence);
+
 // The true trajectory of the camera of the images that the sequence gives, from the field that is
 // set, which belongs to the camera as read; absent without ground truth. The file may have
 // any of the forms in docs/outputs.md. What was converted or skipped is added to `notes`. Throws
 // InputError for a file that cannot be used.
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
                                           std::vector<std::string>* notes = nullptr);
+// The same for a run that can go on without it: what was converted or skipped, and why it cannot be
+// used, is added to `warnings`.
+std::optional<Trajectory> TryGroundtruth(const ImageSequence& sequence,
+                                         std::vector<std::string>& warnings);
 
 }  // namespace hullslam

@@ -3,8 +3,8 @@
 
 #include <Eigen/LU>
 
-#include "util/chi_square.h"
-#include "util/thin.h"
+#include "util/lists.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 

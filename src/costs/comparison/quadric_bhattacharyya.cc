@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/comparison/quadric_bhattacharyya.h"
-
 #include "costs/comparison/quadric_distribution.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/comparison/quadric_filtered_point.h"
-
 #include <Eigen/LU>
 #include <cmath>
 
 #include "costs/comparison/quadric_algebraic_point.h"
-#include "util/thin.h"
+#include "costs/residual_kind.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

@@ -12,7 +12,7 @@
 #include "frame/detection/detection_depth.h"
 #include "frame/detection/detection_lines.h"
 #include "frame/detection/detection_outline.h"
-#include "frame/detection/detection_region.h"
+#include "frame/detection/mask_region.h"
 #include "geometry/polyline.h"
 #include "hullslam/util/check.h"
 

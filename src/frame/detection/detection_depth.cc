@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hullslam/camera/depth.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

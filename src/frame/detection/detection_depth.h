@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "frame/detection/detection_lines.h"
-#include "frame/detection/detection_region.h"
 #include "frame/detection/mask_camera.h"
+#include "frame/detection/mask_region.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 
 namespace hullslam {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core/mat.hpp>
 #include <set>
 #include <span>
@@ -9,12 +10,23 @@
 
 #include "frame/detection/detection_builder.h"
 #include "hullslam/camera/depth.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/built_frame.h"
+#include "hullslam/frame/detection.h"
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/frame/sensor.h"
 #include "util/task_runner.h"
 
 namespace hullslam {
+
+// Gives each detection of the left image of a rectified pair (`camera`) the lines of the detection
+// of the right image that shows the same object (Detection::right_lines). The two have one label,
+// and their hulls have an IoU of more than 0.5 when the left one is shifted by the disparity of its
+// depth points, or, without these, such that the middles of the two boxes have the same column. Two
+// masks without common pixels cannot both have such an IoU with a third one, so each detection
+// belongs to one of the other image. Returns the number of detections that got lines.
+size_t AddLinesOfRight(std::span<const Detection> right, const PinholeCamera& camera,
+                       std::vector<Detection>& left);
 
 // Makes the detections of frames, from the masks of all classes that are not dynamic.
 class FrameDetector {

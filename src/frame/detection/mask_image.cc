@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "frame/detection/mask_outline.h"
-#include "frame/detection/sort_outlines.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -8,6 +8,11 @@
 
 namespace hullslam {
 
+constexpr double kSmallestOutlineArea = 1.0;  // px^2
+
+// Sorts outlines by area, the largest first, and removes those smaller than kSmallestOutlineArea.
+void SortByArea(std::vector<std::vector<Eigen::Vector2d>>& outlines);
+
 // Outlines of the 8-connected parts of a binary image (CV_8UC1, nonzero is inside), without their
 // holes and what is in them. In their coordinates (px) the centres of pixels are integers. The
 // outlines pass through the middles of the edges between inside and outside pixels, halfway between

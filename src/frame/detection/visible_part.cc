@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/detection/visible_part.h"
 
-#include "geometry/convex_hull.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 

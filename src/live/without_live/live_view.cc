@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live/live_view.h"
 
+#include <nlohmann/json.hpp>
+
+#include "live/live_output.h"
 #include "util/components.h"
 
 namespace hullslam {
@@ -34,5 +37,19 @@ bool LiveView::IsLocalisationWanted() const { return false; }
 void LiveView::BeginFinishing() {}
 void LiveView::End(std::shared_ptr<const Map>, nlohmann::json) {}
 uint64_t LiveView::bytes_sent() const { return 0; }
+
+LiveOutput::LiveOutput() = default;
+LiveOutput::LiveOutput(ShownRun) { FailWithoutLive(); }
+LiveOutput::~LiveOutput() = default;
+LiveOutput::LiveOutput(LiveOutput&&) noexcept = default;
+std::string LiveOutput::url() const { return {}; }
+std::chrono::steady_clock::duration LiveOutput::BeforeFrame(System&, const std::function<bool()>&,
+                                                            const std::function<void()>&) {
+  return {};
+}
+void LiveOutput::NoteFrame(const FrameReport&) {}
+void LiveOutput::AfterFrame(LiveFrame, const System&) {}
+void LiveOutput::BeginFinishing() {}
+void LiveOutput::End(std::shared_ptr<const Map>, const nlohmann::json&) {}
 
 }  // namespace hullslam

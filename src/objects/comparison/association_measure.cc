@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "costs/comparison/quadric_distribution.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 
 namespace hullslam {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/comparison/start_box_planes.h"
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "objects/start_method.h"
 
 namespace hullslam {
 namespace {

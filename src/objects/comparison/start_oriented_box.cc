@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/comparison/start_oriented_box.h"
-
 #include <algorithm>
 #include <optional>
 
 #include "geometry/oriented_box.h"
 #include "objects/initialisation.h"
+#include "objects/start_method.h"
 
 namespace hullslam {
 namespace {

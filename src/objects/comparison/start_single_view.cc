@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/comparison/start_single_view.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
+
+#include "objects/start_method.h"
 
 namespace hullslam {
 namespace {

@@ -2,8 +2,7 @@
 #include "objects/constraint/carried_hull.h"
 
 #include "frame/detection/visible_part.h"
-#include "geometry/convex_hull.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/initialisation.h"
 

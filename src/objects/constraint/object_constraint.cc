@@ -11,12 +11,12 @@
 
 #include "costs/both_views.h"
 #include "costs/depth_anchor.h"
-#include "costs/make_object_cost.h"
 #include "costs/pixel_error.h"
 #include "costs/quadric_prior.h"
+#include "costs/residual_kind.h"
+#include "objects/constraint/misfit.h"
 #include "objects/constraint/point_statistics.h"
-#include "objects/constraint/raw_lines.h"
-#include "util/thin.h"
+#include "util/lists.h"
 
 namespace hullslam {
 namespace {

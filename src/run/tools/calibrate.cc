@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "run/calibration_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"

@@ -99,46 +99,6 @@ void CheckAndDraw(const CheckedSource& checked, size_t frame, const MaskFrame& n
   }
 }
 
-void PrintClasses(const MaskStatistics& counts) {
-  size_t width = std::string("class").size();
-  for (const auto& [label, of_class] : counts.classes) {
-    width = std::max(width, label.size());
-  }
-  Print("\n{:<{}}{:>12}{:>10}{:>12}\n", "class", width, "instances", "kept", "mean score");
-  for (const auto& [label, of_class] : counts.classes) {
-    Print("{:<{}}{:>12}{:>10}{:>12.2f}\n", label, width, of_class.instances, of_class.kept,
-          of_class.score_sum / static_cast<double>(of_class.instances));
-  }
-}
-
-void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
-                 const MaskStatistics& counts, size_t pictures) {
-  const auto print = [](const std::string& name, size_t count) {
-    Print("{:<24}{:>10}\n", name, count);
-  };
-  Print("{} ({})\n", arguments.masks.string(), source.format());
-  print("frames", counts.frames);
-  print("without image", counts.without_image);
-  print("without depth", counts.without_depth);
-  print("without masks", counts.without_masks);
-  print("  without file", counts.missing);
-  print("malformed", counts.faults.size());
-  print("instances", counts.instances);
-  print("kept", counts.detections);
-  print("  cut by the border", counts.cut);
-  print("rejected: crowd", counts.crowds);
-  print("rejected: no area", counts.without_area);
-  for (size_t i = 0; i < counts.rejections.size(); ++i) {
-    print("rejected: " + ToString(static_cast<DetectionRejection>(i)), counts.rejections[i]);
-  }
-  print("lines", counts.lines);
-  print("  one-sided", counts.one_sided);
-  if (!arguments.output.empty()) {
-    Print("{} pictures are in {}\n", pictures, arguments.output.string());
-  }
-  PrintClasses(counts);
-}
-
 void PrintFaults(const std::vector<std::string>& faults) {
   for (size_t i = 0; i < faults.size() && i < kMostFaultsShown; ++i) {
     PrintError("error: {}\n", faults[i]);
@@ -219,7 +179,11 @@ int RunCheckMasks(int argc, char** argv) {
     return kFailed;
   }
   const size_t pictures = output != nullptr ? FinishOutput(*output) : 0;
-  PrintCounts(arguments, *source, counts, pictures);
+  Print("{} ({})\n{}", arguments.masks.string(), source->format(), DescribeCounts(counts));
+  if (output != nullptr) {
+    Print("{} pictures are in {}\n", pictures, arguments.output.string());
+  }
+  Print("{}", DescribeClasses(counts));
   PrintFaults(counts.faults);
   return counts.faults.empty() ? kDone : kBadInput;
 }

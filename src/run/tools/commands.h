@@ -5,9 +5,9 @@
 
 namespace hullslam {
 
-// The tools, each in the file of this folder that has its name. Each parses its command line, in
-// which argv[0] is the name for --help, and returns the exit code. Throws InputError for bad usage
-// or input.
+// The tools, each in the file of this folder that has its name (those for vocabularies are in
+// vocabulary_commands.cc). Each parses its command line, in which argv[0] is the name for --help,
+// and returns the exit code. Throws InputError for bad usage or input.
 int RunCalibrate(int argc, char** argv);
 int RunCheckMasks(int argc, char** argv);
 int RunConvertVocabulary(int argc, char** argv);

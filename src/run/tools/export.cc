@@ -14,7 +14,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
-#include "util/split_names.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

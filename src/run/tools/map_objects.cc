@@ -17,9 +17,9 @@
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/known_pose_mapper.h"
 #include "hullslam/util/error.h"
-#include "objects/resolved_observation.h"
 #include "results/object_file.h"
 #include "results/output_folder.h"
+#include "results/run_report.h"
 #include "results/summarize_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
@@ -27,7 +27,6 @@
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/more_outputs.h"
-#include "run/print_results.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
@@ -91,30 +90,11 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
                          "and summary.json says so)");
 }
 
-// A frame that is used for mapping.
-struct ChosenFrame {
-  size_t frame = 0;  // index in the sequence
-  Rigid3 world_from_cam;
-};
-
-struct ChosenViews {
-  std::vector<ChosenFrame> views;
-  size_t without_pose = 0;  // frames
-};
-
-// Chooses the frames to use (FrameChooser). Throws InputError if no frame has a pose.
-ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<FramePaths>& frames,
-                        const Trajectory& poses, const SequenceMasks& masks) {
-  ChosenViews chosen;
-  FrameChooser chooser(arguments.choice);
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxGapOfPoses);
-    if (!pose) {
-      ++chosen.without_pose;
-    } else if (chooser.Choose(*pose, [&] { return masks.Read(i); })) {
-      chosen.views.push_back({i, *pose});
-    }
-  }
+// Chooses the frames to use. Throws InputError if no frame has a pose.
+ChosenViews ChooseMappedViews(const MapObjectsArguments& arguments, const ImageSequence& sequence,
+                              const Trajectory& poses, const SequenceMasks& masks) {
+  ChosenViews chosen = ChooseViews(StampsOf(sequence), poses, kMaxGapOfPoses, arguments.choice,
+                                   [&](size_t frame) { return masks.Read(frame); });
   if (chosen.views.empty()) {
     throw InputError(
         fmt::format("{}: no frame of {} has a pose, expected poses before and after a frame "
@@ -122,24 +102,6 @@ ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<
                     arguments.poses.string(), arguments.sequence.string(), kMaxGapOfPoses));
   }
   return chosen;
-}
-
-void PrintTable(const KnownPoseMapper& run, const ObjectResults& report) {
-  Print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views", "parallax",
-        "half axes (m)", "SIoU", "mask", "misfit");
-  for (const ObjectResult& object : report.objects) {
-    if (object.state != ObjectState::kMapped) {
-      continue;
-    }
-    const ObjectLandmark& landmark = run.map().objects().At(object.id);
-    const double parallax = Parallax(ResolveObservations(run.map(), landmark),
-                                     object.ellipsoid.world_from_object.translation);
-    const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-    Print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
-          object.id.value, object.label, object.observations.size(), parallax, axes.x(), axes.y(),
-          axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
-          object.misfit_px);
-  }
 }
 
 struct MappingInputs {
@@ -183,11 +145,11 @@ void PrintInputs(const MappingInputs& inputs, const SequenceMasks& masks) {
 // Adds the views to the mapper. Returns false if a signal ended it early. Throws InputError for a
 // view that cannot be used; the views before it have been added.
 bool MapViews(const MapObjectsArguments& arguments, const OpenedDataset& opened,
-              const std::vector<ChosenFrame>& views, const SequenceMasks& masks, Progress& progress,
+              const std::vector<ChosenView>& views, const SequenceMasks& masks, Progress& progress,
               KnownPoseMapper& run) {
   const ImageSequence& sequence = opened.sequence;
   const SystemOptions& options = opened.settings.options;
-  for (const ChosenFrame& view : views) {
+  for (const ChosenView& view : views) {
     if (IsInterrupted()) {
       return false;
     }
@@ -210,7 +172,7 @@ struct MappingEnd {
 };
 
 MappingEnd MapAll(const MapObjectsArguments& arguments, const OpenedDataset& opened,
-                  const std::vector<ChosenFrame>& views, const SequenceMasks& masks,
+                  const std::vector<ChosenView>& views, const SequenceMasks& masks,
                   KnownPoseMapper& run) {
   Progress progress(opened.sequence.frames.size(), arguments.quiet);
   MappingEnd end;
@@ -299,7 +261,7 @@ int RunMapObjects(int argc, char** argv) {
   const SequenceMasks masks(RequestOf(arguments.masks, arguments.masks_format, sequence, camera),
                             MaskFrames(sequence));
   const auto& frames = sequence.frames;
-  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
+  const auto [views, without_pose] = ChooseMappedViews(arguments, sequence, inputs.poses, masks);
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {kProgram, arguments.overwrite});
@@ -324,10 +286,10 @@ int RunMapObjects(int argc, char** argv) {
   const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
   WriteOutputs(output, sequence, run, report, scene, summary);
   if (!arguments.quiet) {
-    PrintTable(run, report);
-    Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
-          summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
-          DescribeObjects(*summary.objects, "m"), arguments.output.string());
+    Print("{}{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
+          DescribeMapped(run.map(), report), summary.map.keyframes, summary.trajectory.frames,
+          without_pose, seconds.count(), DescribeObjects(*summary.objects, "m"),
+          arguments.output.string());
   }
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), run.map(), options, sequence, arguments.quiet)

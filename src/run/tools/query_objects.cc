@@ -79,16 +79,6 @@ void CheckArguments(const QueryArguments& arguments) {
   }
 }
 
-void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {
-  Print("{:>4} {:<16} {:>5} {:>23}  {}\n", "id", "class", "score", "centre", "why");
-  for (const Answer& answer : answers) {
-    const SceneObject& object = *scene.Find(answer.object);
-    const Eigen::Vector3d& center = object.ellipsoid.world_from_object.translation;
-    Print("{:>4} {:<16} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f}  {}\n", answer.object.value,
-          object.label, answer.score, center.x(), center.y(), center.z(), answer.reason);
-  }
-}
-
 }  // namespace
 
 int RunQueryObjects(int argc, char** argv) {
@@ -105,7 +95,7 @@ int RunQueryObjects(int argc, char** argv) {
   if (arguments.json) {
     Print("{}\n", AnswersJson(scene, answers));
   } else if (!answers.empty()) {
-    PrintAnswers(scene, answers);
+    Print("{}", AnswersText(scene, answers));
   }
   if (!arguments.picture.empty() && !answers.empty()) {
     WriteAnswerPicture(arguments.source, answers, arguments.picture);

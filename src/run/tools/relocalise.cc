@@ -254,44 +254,14 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
   return MadeMap{system.map(), ate.reference_from_estimate};
 }
 
+// Looks for a frame in the map.
 QueryResult RunQuery(const RelocaliseInputs& inputs, const MadeMap& made,
                      const Relocaliser& relocaliser, System& builder, size_t frame) {
   const BuiltFrame built = builder.Build(LoadFrame(inputs, inputs.query_options.camera, frame));
-  QueryResult result;
-  const auto start = std::chrono::steady_clock::now();
-  result.found = relocaliser.Find(*built.frame);
-  result.milliseconds =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (result.found) {
-    const Rigid3 truth =
-        InterpolatePose(inputs.groundtruth, inputs.sequence.frames[frame].timestamp, kMaxPoseGap)
-            .value();
-    const Eigen::Vector3d position = Inverse(result.found->cam_from_world).translation;
-    result.error = (made.truth_from_map * position - truth.translation).norm();
-  }
-  return result;
-}
-
-void PrintQuery(size_t frame, const QueryResult& result) {
-  if (result.found) {
-    Print("frame {}: by {}, error {:.4f} m, {} landmarks, {} objects, {:.1f} ms\n", frame,
-          ToString(result.found->method), result.error, result.found->inliers,
-          result.found->used_objects, result.milliseconds);
-  } else {
-    Print("frame {}: not found, {:.1f} ms\n", frame, result.milliseconds);
-  }
-}
-
-void PrintResults(const std::vector<QueryResult>& results) {
-  Print("{:<9}  {:>7}  {:>8}  {:>9}  {:>5}  {:>9}  {:>6}\n", "method", "queries", "<= 5 cm",
-        "<= 10 cm", "false", "median ms", "max ms");
-  for (const QuerySummary& line : SummarizeQueries(results)) {
-    const std::string duration =
-        line.queries == 0 ? fmt::format("{:>9}  {:>6}", "-", "-")
-                          : fmt::format("{:>9.1f}  {:>6.1f}", line.median_ms, line.max_ms);
-    Print("{:<9}  {:>7}  {:>6.1f} %  {:>7.1f} %  {:>5}  {}\n", line.name, line.queries,
-          line.near_percent, line.far_percent, line.wrong, duration);
-  }
+  const Rigid3 truth =
+      InterpolatePose(inputs.groundtruth, inputs.sequence.frames[frame].timestamp, kMaxPoseGap)
+          .value();
+  return Relocalise(relocaliser, *built.frame, made.truth_from_map, truth);
 }
 
 }  // namespace
@@ -324,12 +294,12 @@ int RunRelocalise(int argc, char** argv) {
     results.push_back(RunQuery(inputs, *made, relocaliser, builder, frame));
     if (arguments.list) {
       progress.Clear();
-      PrintQuery(frame, results.back());
+      Print("frame {}: {}", frame, DescribeQuery(results.back()));
     }
     progress.Show(results.size());
   }
   progress.Clear();
-  PrintResults(results);
+  Print("{}", DescribeQueries(results));
   return kDone;
 }
 

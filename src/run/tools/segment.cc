@@ -15,7 +15,7 @@
 #include "run/progress.h"
 #include "run/tools/commands.h"
 #include "segmentation/mask_folder.h"
-#include "util/counted.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {

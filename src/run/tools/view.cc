@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <string>
 
-#include "files/atomic_file.h"
+#include "files/staged_file.h"
 #include "run/command_line.h"
-#include "run/live_output.h"
 #include "run/messages.h"
 #include "run/more_outputs.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
+#include "run/view_arguments.h"
 #include "view/report.h"
 
 namespace hullslam {

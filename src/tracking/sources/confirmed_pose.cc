@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "frame/wide_sensor.h"
+#include "frame/measure_point.h"
 #include "places/depth_agreement.h"
 #include "places/similar_places.h"
 #include "tracking/sources/pair_votes.h"

@@ -4,10 +4,10 @@
 
 #include "map/islands.h"
 #include "matching/by_projection.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
-#include "util/median.h"
+#include "util/statistics.h"
 
 namespace hullslam {
 namespace {

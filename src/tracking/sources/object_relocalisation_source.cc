@@ -5,18 +5,18 @@
 
 #include "estimators/absolute_pose.h"
 #include "frame/measure_point.h"
-#include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/keyframe_graph.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "objects/arrangement.h"
 #include "objects/pose_hypotheses.h"
 #include "places/landmark_search.h"
-#include "tracking/pose_objects.h"
+#include "tracking/frame_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
-#include "util/id_map.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "estimators/absolute_pose.h"
 #include "frame/measure_point.h"
-#include "util/random_seed.h"
+#include "util/hash.h"
 
 namespace hullslam {
 

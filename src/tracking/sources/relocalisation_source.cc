@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/covisibility.h"
+#include "map/keyframe_graph.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
 #include "tracking/sources/pose_of_matches.h"

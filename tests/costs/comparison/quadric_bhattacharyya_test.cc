@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/comparison/quadric_bhattacharyya.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "costs/make_object_cost.h"
 #include "costs/object_cost_laws.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 namespace {

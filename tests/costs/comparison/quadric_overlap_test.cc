@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "costs/object_cost_laws.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 
 namespace hullslam {

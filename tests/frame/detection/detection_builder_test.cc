@@ -11,7 +11,7 @@
 #include <set>
 
 #include "frame/made_masks.h"
-#include "geometry/convex_hull.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"

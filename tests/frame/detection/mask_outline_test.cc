@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "frame/detection/mask_outline.h"
 
 #include <gtest/gtest.h>
@@ -10,10 +11,29 @@
 #include <random>
 #include <vector>
 
+#include "geometry/polyline.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
+
 namespace {
+
+using Outlines = std::vector<std::vector<Eigen::Vector2d>>;
+
+Outlines SquareAt(double side, double x) {
+  return {{{x, 0.0}, {x + side, 0.0}, {x + side, side}, {x, side}}};
+}
+
+TEST(SortOutlines, OutlinesAreSortedByAreaWhateverTheirDirection) {
+  const auto large = SquareAt(4.0, 0.0)[0];
+  const auto middle = SquareAt(2.0, 10.0)[0];
+  const auto tie = SquareAt(2.0, 20.0)[0];
+  const auto small = SquareAt(0.9, 30.0)[0];
+  Outlines outlines = {middle, small, {large.rbegin(), large.rend()}, tie};
+  SortByArea(outlines);
+  EXPECT_EQ(outlines, (Outlines{{large.rbegin(), large.rend()}, middle, tie}));
+  EXPECT_LT(SignedArea(outlines[0]), 0.0);
+}
 
 using Eigen::Vector2d;
 using Outline = std::vector<Vector2d>;
@@ -213,4 +233,5 @@ TEST(LabelOutlines, ManyScatteredNumbersAreFoundInOnePass) {
 }
 
 }  // namespace
+
 }  // namespace hullslam

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "frame/made_masks.h"
-#include "geometry/convex_hull.h"
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "geometry/polyline.h"
 #include "hullslam/geometry/conic.h"
 #include "support/fisheye_camera.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/comparison/start_box_planes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "objects/seen_by_ring.h"
+#include "objects/start_method.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objects/comparison/start_oriented_box.h"
-
 #include <gtest/gtest.h>
 
 #include "objects/seen_by_ring.h"
+#include "objects/start_method.h"
 
 namespace hullslam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/polygon_overlap.h"
+#include "geometry/polygon.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {
