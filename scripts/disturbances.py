@@ -4,21 +4,12 @@ table."""
 
 import argparse
 import dataclasses
-import pathlib
 
 import numpy as np
 
 MIN_STEP = 1e-4  # s, from one late stamp to the next
 BRIGHTNESS_PERIOD = 30  # images with the same brightness
 HOLE = 32  # px, side of a hole in a depth image
-
-
-@dataclasses.dataclass
-class Frame:
-    stamp: float  # s, the one that is written
-    taken: float  # s, when the image was really taken
-    image: pathlib.Path
-    depth: pathlib.Path = None
 
 
 # ---- stamps and lists: functions (frames, amount, random numbers) -> frames

@@ -152,15 +152,19 @@ def value_at(content, *keys):
     return float(content) if is_number else None
 
 
+def list_lines(path):
+    """(number, words) of each line of a text file that is neither empty nor a comment."""
+    return [(number, line.split()) for number, line in enumerate(read_text(path).splitlines(), 1)
+            if line.strip() and not line.lstrip().startswith("#")]
+
+
 def read_trajectory(path):
     """Stamps (n) and poses (n x 7, tx ty tz qx qy qz qw) of a TUM file, one pose per line."""
     import numpy as np
     rows = []
-    for count, line in enumerate(read_text(path).splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
+    for count, words in list_lines(path):
         try:
-            row = [float(word) for word in line.replace(",", " ").split()]
+            row = [float(word) for word in " ".join(words).replace(",", " ").split()]
         except ValueError:
             row = []
         if len(row) != 8 or not all(map(math.isfinite, row)):
