@@ -8,6 +8,7 @@ import importlib.util
 import json
 import math
 import pathlib
+import subprocess
 import sys
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
@@ -79,6 +80,16 @@ def programs_folder():
     top = SCRIPTS.parent
     installed = top.parent.parent / "libexec" / "hullslam"
     return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
+
+
+def run_program(command, log, **options):
+    """The exit code of a program, whose messages go to the file `log`."""
+    with log.open("w", encoding="utf-8") as messages:
+        try:
+            return subprocess.run([str(word) for word in command], stdout=messages, stderr=messages,
+                                  check=False, **options).returncode
+        except OSError as error:
+            raise InputError(f"cannot run {command[0]}: {error.strerror}") from error
 
 
 def hullslam_module():
