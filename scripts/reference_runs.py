@@ -23,7 +23,8 @@ import tempfile
 from support import (exit_code, hash_file, InputError, parser_of, programs_folder, read_json, run_program,
                      write)
 
-HASHED = ("trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "saved.map")
+HASHED = ("trajectory.txt", "keyframes.txt", "map.ply", "objects.json")
+SAVED_MAP = "saved.map"
 
 
 def list_runs(desk, sequence, masks):
@@ -33,10 +34,10 @@ def list_runs(desk, sequence, masks):
         plain = {name: [program, folder] for name, program in kinds.items()}
         with_masks = {f"{name}_masks": [*command, "--masks", masks] for name, command in plain.items()}
         return plain, {**with_masks, "objects": [*known_poses, "--masks", masks]}
-    (plain, others), saved = of_sequence(desk, desk / "masks", {"desk": "rgbd_tum"}), "desk_saved/saved.map"
+    plain, others = of_sequence(desk, desk / "masks", {"desk": "rgbd_tum"})
     runs = {**plain, "desk_masks": others["desk_masks"], "desk_objects": others["objects"],
-            "desk_saved": [*others["desk_masks"], "--last", 149, "--save-map", saved],
-            "desk_loaded": [*others["desk_masks"], "--first", 150, "--load-map", saved]}
+            "desk_saved": [*others["desk_masks"], "--last", 149, "--save-map", SAVED_MAP],
+            "desk_loaded": [*others["desk_masks"], "--first", 150, "--load-map", SAVED_MAP]}
     if sequence is not None:
         plain, others = of_sequence(sequence, masks, {"rgbd": "rgbd_tum", "mono": "mono_tum"})
         runs |= plain | (others if masks is not None else {})
@@ -68,13 +69,12 @@ def run_all(arguments, work):
         if arguments.only and name not in arguments.only:
             continue
         shutil.rmtree(work / name, ignore_errors=True)
-        (work / name).mkdir()
         log = work / f"{name}.log"
         code = run_program([programs / program, *words, "--output", name, "--quiet"], log, cwd=work)
         if code == 2:
             raise InputError(f"{name}: {program} refused its input, see {log}")
-        hashes[name] = {file: hash_file(work / name / file) for file in HASHED
-                        if (work / name / file).exists()} | {"exit code": str(code)}
+        files = [work / name / file for file in HASHED] + [work / SAVED_MAP] * ("--save-map" in words)
+        hashes[name] = {path.name: hash_file(path) for path in files if path.exists()} | {"exit code": str(code)}
         print(f"{name}: exit code {code}, {len(hashes[name]) - 1} files", flush=True)
     return hashes
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-MAX_DIFFERENCE = 0.02  # s, between the stamps of an estimated pose and a true one, or of an image and its depth
+MAX_DIFFERENCE = 0.02  # s, between stamps of a pair: estimated and true pose, or image and depth
 LEAST_POSES = 3  # for an alignment
 STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 triples, and no triple of
 #              50 is right with a probability of (7/8)^50 = 0.1 %
