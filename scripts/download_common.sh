@@ -107,11 +107,8 @@ download_all() {
   max_size=20
   names=()
   while [ $# -gt 0 ]; do
+    help_if_asked "$1"
     case "$1" in
-      -h | --help)
-        print_help
-        exit 0
-        ;;
       --to | --base | --checksums | --max-size)
         [ -n "${2:-}" ] || usage_error "$1 needs a value"
         case "$1" in

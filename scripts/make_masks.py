@@ -90,11 +90,10 @@ def yolo_text(detections):
         return ""
     numbers, scores, arrays = zip(*detections)
     masks = hullslam_module().Masks(np.stack(arrays), list(map(str, numbers)), np.clip(scores, 0.0, 1.0))
-    found = [(number, parts[0], score) for number, parts, score in zip(masks.classes, masks.outlines, masks.scores)
-             if area_of(parts[0]) >= MIN_AREA]
     size = np.array(arrays[0].shape[::-1])
-    return print_masks([(number, np.clip(outline / size, 0.0, 1.0), score)
-                        for number, outline, score in found], digits=6)
+    return print_masks([(number, np.clip(parts[0] / size, 0.0, 1.0), score) for number, parts, score
+                        in zip(masks.classes, masks.outlines, masks.scores)
+                        if area_of(parts[0]) >= MIN_AREA], digits=6)
 
 
 # ---- networks
@@ -172,7 +171,8 @@ def refine(refiner, image, boxes, options):
 def prepare(out, arguments):
     """Makes the folder. Refuses one with masks of other networks, because they would be mixed."""
     out.mkdir(parents=True, exist_ok=True)
-    path, made_by = out / SETTINGS, {key: getattr(arguments, key) for key in ("model", "refine", "confidence")}
+    path = out / SETTINGS
+    made_by = {key: getattr(arguments, key) for key in ("model", "refine", "confidence")}
     if path.exists():
         if (former := read_json(path)) != made_by:
             raise InputError(f"{out}: has masks that were made with {json.dumps(former)}; choose "

@@ -74,7 +74,8 @@ def run_all(arguments, work):
         if code == 2:
             raise InputError(f"{name}: {program} refused its input, see {log}")
         files = [work / name / file for file in HASHED] + [work / SAVED_MAP] * ("--save-map" in words)
-        hashes[name] = {path.name: hash_file(path) for path in files if path.exists()} | {"exit code": str(code)}
+        hashes[name] = {path.name: hash_file(path) for path in files if path.exists()}
+        hashes[name]["exit code"] = str(code)
         print(f"{name}: exit code {code}, {len(hashes[name]) - 1} files", flush=True)
     return hashes
 
