@@ -3,7 +3,8 @@
 """Checks which headers and words the modules of HullSLAM use, and their sizes; fails if one breaks a
 rule below.
 
-1. A module includes only its own headers and headers of modules at strictly lower levels (LEVELS).
+1. A module includes only its own headers and headers of modules at strictly lower levels
+   (modules.toml).
 2. Of those modules it includes only the ones that its CMakeLists.txt names in LINKS. A module whose
    CMakeLists.txt is missing or does not call hullslam_module() is not checked for this rule.
 3. A public header (in include/) includes no private header (in src/).
@@ -19,32 +20,12 @@ import dataclasses
 import pathlib
 import re
 import sys
+import tomllib
 
-from support import check_program
+from support import check_program, SCRIPTS
 
-LEVELS = {
-    "util": 0,
-    "files": 1, "geometry": 1,
-    "images": 2, "bags": 2, "camera": 2, "features": 2,
-    "bow": 3, "estimators": 3,
-    "frame": 4,
-    "costs": 5, "matching": 5,
-    "map": 6,
-    "objects": 7, "places": 7,
-    "optim": 8,
-    "tracking": 9, "mapping": 9, "loop": 9,
-    "system": 10,
-    "calibration": 11, "report": 11,
-    "eval": 12, "scene": 12,
-    "settings": 13, "map_files": 13,
-    "results": 14,
-    "sequences": 15,
-    "datasets": 16, "masks": 16,
-    "view": 17,
-    "exports": 18, "live": 18, "segmentation": 18,
-    # The code that the programs share. It is not part of libhullslam and has no public headers.
-    "run": 19,
-}
+MODULES = tomllib.loads((SCRIPTS / "modules.toml").read_text(encoding="utf-8"))
+LEVELS = {module: int(level) for level, modules in MODULES.items() for module in modules}
 PROGRAM_SIDE = {"run"}
 
 
@@ -173,7 +154,7 @@ def fault(module, target, links):
 def check_file(path, module, public, root, links):
     where = path.relative_to(root)
     if module not in LEVELS:
-        return [f'{where}: unknown module "{module}"; add it to LEVELS in check_layers.py']
+        return [f'{where}: unknown module "{module}"; add it to scripts/modules.toml']
     if public and module in PROGRAM_SIDE:
         return [f"{where}: {module} belongs to the programs and may not have public headers"]
     faults = []

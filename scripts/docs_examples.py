@@ -7,10 +7,11 @@ page explains before, such as `options` and `system`; the class DocsExample of t
 them. Errors of the compiler name the document and its line.
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import exit_code, InputError, parser_of, read_text
 
 HEAD = """// SPDX-License-Identifier: GPL-3.0-or-later
 // Written by scripts/docs_examples.py.
@@ -33,7 +34,7 @@ def blocks_of(text):
         else:
             code.append(line)
     if begin is not None:
-        raise ValueError(f"line {begin - 1}: the block has no end")
+        raise InputError(f"line {begin - 1}: the block has no end")
 
 
 def program(documents):
@@ -47,18 +48,13 @@ def program(documents):
     return "\n".join([*parts, "}  // namespace", ""])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("documents", nargs="+", type=pathlib.Path, metavar="DOCUMENT")
-    parser.add_argument("--output", required=True, type=pathlib.Path, metavar="FILE.cc")
-    arguments = parser.parse_args()
-    try:
-        text = program([(path, path.read_text(encoding="utf-8")) for path in arguments.documents])
-    except (OSError, ValueError) as error:
-        sys.exit(f"docs_examples.py: {error}")
+def run(arguments):
+    text = program([(path, read_text(path)) for path in arguments.documents])
     arguments.output.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    parser = parser_of(__doc__)
+    parser.add_argument("documents", nargs="+", type=pathlib.Path, metavar="DOCUMENT")
+    parser.add_argument("--output", required=True, type=pathlib.Path, metavar="FILE.cc")
+    sys.exit(exit_code(run, parser.parse_args()))
