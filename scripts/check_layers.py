@@ -78,39 +78,19 @@ def source_files(root):
                 yield path, inside[0] if len(inside) > 1 else "", public
 
 
-def file_beside(included, quoted, path, root):
-    """The path, from the top of the repository, of a header that is named relative to `path`.
-
-    None if the include is written otherwise or the path lies outside of the library.
-    """
-    beside = (path.parent / included).resolve()
-    tops = (root / "src", root / "include")
-    if quoted and any(beside.is_relative_to(top) for top in tops):
-        return beside.relative_to(root)
-    return None
-
-
-def target_module(included, quoted, path, root):
-    """The module that an include names: "" if it names no module, None for a foreign header."""
+def target_of(included, quoted, path, root):
+    """The module of the header that an include names ("" if it is in none) and whether the header is
+    private; (None, False) for a foreign header."""
     parts = included.split("/")
     if parts[0] == "hullslam":
-        return parts[1] if len(parts) > 2 else ""
+        return parts[1] if len(parts) > 2 else "", False
     if len(parts) > 1 and parts[0] in LEVELS:
-        return parts[0]
-    beside = file_beside(included, quoted, path, root)
-    if beside is None:
-        return None
-    inside = beside.parts[1:] if beside.parts[0] == "src" else beside.parts[2:]
-    return inside[0] if inside else ""
-
-
-def is_private(included, quoted, path, root):
-    """Whether an include names a header in src/."""
-    parts = included.split("/")
-    if len(parts) > 1 and parts[0] in LEVELS:
-        return True
-    beside = file_beside(included, quoted, path, root)
-    return beside is not None and beside.parts[0] == "src"
+        return parts[0], True
+    beside = (path.parent / included).resolve()
+    for top, is_private in (root / "src", True), (root / "include" / "hullslam", False):
+        if quoted and beside.is_relative_to(top):
+            return next(iter(beside.relative_to(top).parts), ""), is_private
+    return None, False
 
 
 def links_of(arguments):
@@ -147,8 +127,7 @@ def fault(module, target, links):
             return None
         return f"{module} includes {target}, which src/{module}/CMakeLists.txt does not name in LINKS"
     way = "sideways" if LEVELS[target] == LEVELS[module] else "up"
-    return (f"{module} (level {LEVELS[module]}) includes {way}: "
-            f"{target} (level {LEVELS[target]})")
+    return f"{module} (level {LEVELS[module]}) includes {way}: {target} (level {LEVELS[target]})"
 
 
 def check_file(path, module, public, root, links):
@@ -165,11 +144,10 @@ def check_file(path, module, public, root, links):
         quoted, included = match[1] == '"', match[2]
         if public and KEPT_PRIVATE.match(included):
             faults.append(f"{where}:{number}: {included} in a public header")
-        if public and is_private(included, quoted, path, root):
+        target, is_private = target_of(included, quoted, path, root)
+        if public and is_private:
             faults.append(f"{where}:{number}: private header {included} in a public one")
-        target = target_module(included, quoted, path, root)
-        reason = None if target is None else fault(module, target, links)
-        if reason:
+        if target is not None and (reason := fault(module, target, links)):
             faults.append(f"{where}:{number}: {reason} ({included})")
     return faults
 
