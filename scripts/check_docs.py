@@ -197,8 +197,8 @@ def length_faults(document):
 
 
 def program_faults(documents, root):
-    named = " ".join(code for document in documents if document.name in ("docs/programs.md", "docs/library.md")
-                     for _, code in document.all_code)
+    pages = [document for document in documents if document.name in ("docs/programs.md", "docs/library.md")]
+    named = " ".join(code for page in pages for _, code in page.all_code)
     for path in sorted((root / "Examples").rglob("*.cc")):
         if not re.search(rf"\b{path.stem}\b", named):
             yield f"docs/programs.md: lacks the program {path.stem}"

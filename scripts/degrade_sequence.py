@@ -25,7 +25,7 @@ import sys
 import tempfile
 import zlib
 
-from support import exit_code, InputError, parser_of, read_trajectory, require
+from support import exit_code, InputError, number, parser_of, read_trajectory, require
 
 require("numpy")
 import numpy as np  # noqa: E402
@@ -197,13 +197,12 @@ def parse(words):
     masks.add_argument("--masks", type=pathlib.Path, metavar="FOLDER",
                        help="masks of IN, format yolo-seg (default: its folder masks, if any)")
     masks.add_argument("--no-masks", action="store_true", help="OUT gets no masks")
-    parser.add_argument("--seed", type=int, default=0, help="of all random choices (default 0)")
+    parser.add_argument("--seed", type=number(0, kind=int), default=0,
+                        help="of all random choices (default 0)")
     for row in DISTURBANCES:
         amount = {"type": row.type, "metavar": row.metavar} if row.type else {"action": "store_true"}
         parser.add_argument(f"--{row.name}", help=row.help, **amount)
     arguments = parser.parse_args(words)
-    if arguments.seed < 0:
-        parser.error("--seed must be 0 or more")
     if arguments.masks and not arguments.masks.is_dir():
         parser.error(f"--masks: {arguments.masks} is no folder, expected masks in the format "
                      "yolo-seg, one text file per image")

@@ -19,7 +19,7 @@ Exit codes: 0 done, 2 bad usage or input.
 import pathlib
 import sys
 
-from support import exit_code, InputError, parser_of, require
+from support import exit_code, InputError, number, parser_of, require
 
 require("numpy", "PIL")
 import numpy as np  # noqa: E402
@@ -127,7 +127,7 @@ def main(words=None):
     parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("out", type=pathlib.Path, metavar="OUT")
-    parser.add_argument("--blank", type=int, default=200, metavar="N",
+    parser.add_argument("--blank", type=number(1, kind=int), default=200, metavar="N",
                         help="number of frames in between (default 200)")
     parser.add_argument("--other", type=pathlib.Path, metavar="SEQUENCE",
                         help="sequence whose first frames come in between (default: blank images)")
@@ -138,8 +138,6 @@ def main(words=None):
     arguments = parser.parse_args(words)
     if arguments.again and arguments.at is not None:
         parser.error("--again and --at exclude each other")
-    if arguments.blank < 1:
-        parser.error("--blank must be 1 or more")
     return exit_code(make, arguments, failure=2)
 
 

@@ -26,7 +26,7 @@ import pathlib
 import sys
 import time
 
-from support import exit_code, hullslam_module, InputError, one_line, parser_of, read_json, write
+from support import exit_code, hullslam_module, InputError, number, one_line, parser_of, read_json, write
 
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
@@ -223,14 +223,11 @@ def main(words=None):
                         help="weights of YOLO (default yolov8x-seg.pt)")
     parser.add_argument("--refine", default="sam_b.pt", metavar="MODEL",
                         help="weights of SAM, or none (default sam_b.pt)")
-    parser.add_argument("--confidence", type=float, default=0.25, metavar="C",
+    parser.add_argument("--confidence", type=number(0.0, 1.0), default=0.25, metavar="C",
                         help="least confidence of a detection (default 0.25)")
     parser.add_argument("--device", help="where the networks run, such as cpu or 0 (default: theirs)")
     parser.add_argument("--quiet", action="store_true", help="no progress")
-    arguments = parser.parse_args(words)
-    if not 0.0 <= arguments.confidence <= 1.0:
-        parser.error(f"--confidence is {arguments.confidence}, expected a number from 0 to 1")
-    return exit_code(make_masks, arguments)
+    return exit_code(make_masks, parser.parse_args(words))
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import exit_code, InputError, parser_of, read_text
+from support import exit_code, InputError, number, parser_of, read_text
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 MARK = "copy_of_plant_defects"  # a file in the copy
@@ -75,8 +75,6 @@ def seed_of_commit(top):
 
 def draw(entries, arguments):
     """Some of the entries, in the order of the list."""
-    if arguments.sample < 1:
-        raise InputError(f"--sample: {arguments.sample}: expected at least 1")
     seed = seed_of_commit(arguments.tree) if arguments.seed is None else arguments.seed
     chosen = random.Random(seed).sample(range(len(entries)), min(arguments.sample, len(entries)))
     print(f"{len(chosen)} of {len(entries)} defects, --seed {seed}", flush=True)
@@ -211,7 +209,7 @@ def main():
                         help="build nothing, only check that all defects apply to the tree")
     parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
                         help="folder for the copy, which is kept")
-    parser.add_argument("--sample", type=int, metavar="N",
+    parser.add_argument("--sample", type=number(1, kind=int), metavar="N",
                         help="plant only N defects, drawn at random (default: all)")
     parser.add_argument("--seed", type=int, metavar="SEED",
                         help="of --sample (default: a number that follows from the commit)")

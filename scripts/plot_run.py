@@ -21,7 +21,8 @@ import subprocess
 import sys
 import tempfile
 
-from support import exit_code, InputError, one_line, parser_of, programs_folder, read_json, require, value_at
+from support import (exit_code, InputError, number, one_line, parser_of, programs_folder, read_json, require,
+                     value_at)
 
 require("numpy", "matplotlib")
 import matplotlib  # noqa: E402
@@ -264,8 +265,6 @@ def print_figures(run):
 
 
 def plot_run(arguments):
-    if arguments.overlay < 0:
-        raise InputError(f"--overlay is {arguments.overlay}, expected 0 or more keyframes")
     data = read_report(arguments)
     for note in data["run"]["notes"]:
         is_wanted = arguments.groundtruth and note.startswith("ground truth left out")
@@ -289,7 +288,8 @@ def main(words=None):
                         help="true trajectory in TUM's format (default: that of the sequence)")
     parser.add_argument("--no-groundtruth", action="store_true", help="draw the run alone")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="(default: RUN_DIR)")
-    parser.add_argument("--overlay", type=int, default=0, metavar="N", help="draw N keyframes too")
+    parser.add_argument("--overlay", type=number(0, kind=int), default=0, metavar="N",
+                        help="draw N keyframes too")
     parser.add_argument("--sequence", type=pathlib.Path, metavar="PATH",
                         help="the sequence of the run (default: the one that summary.json names)")
     return exit_code(plot_run, parser.parse_args(words), failure=2)

@@ -26,20 +26,19 @@ import pathlib
 import shutil
 import sys
 
-from support import exit_code, InputError, parser_of, programs_folder, read_json, require, write
+from support import exit_code, InputError, number, parser_of, read_json, require, SCRIPTS, write
 
 require("numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
 from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
                                  result_file, stop_by_signals, table_lock)
 from paper_tables.files import latex, markdown, markdown_lines  # noqa: E402
-from paper_tables.plan import Request, Tools, chosen, make_plan  # noqa: E402
+from paper_tables.plan import Request, Tools, add_work_options, chosen, make_plan  # noqa: E402
 from paper_tables.sequences import (find_sequences, in_order, read_list, read_sequence,  # noqa: E402
                                     read_suite, suite_file)
 from paper_tables.tables import Report, compare_reports, read_report  # noqa: E402
 from paper_tables.text import comparison_grid  # noqa: E402
 
-SCRIPTS = pathlib.Path(__file__).resolve().parent
 OWN = SCRIPTS / "paper_tables"
 QUICK_SEQUENCES, QUICK_FRAMES = 2, 40
 
@@ -225,38 +224,24 @@ def parse_arguments(words):
     runs.add_argument("--out", type=pathlib.Path, required=True, help="folder for runs and tables")
     runs.add_argument("--tables", metavar="I,II,...", help="only some of the tables")
     runs.add_argument("--modes", metavar="rgbd,mono", help="only one of the modes")
-    runs.add_argument("--seeds", type=int, metavar="N", help="runs per cell (default 3)")
-    runs.add_argument("--first-seed", type=int, default=0, metavar="N", help="(default 0)")
-    runs.add_argument("--frames", type=int, metavar="N", help="only the first N images")
+    runs.add_argument("--seeds", type=number(1, kind=int), metavar="N", help="runs per cell (default 3)")
+    runs.add_argument("--first-seed", type=number(0, kind=int), default=0, metavar="N", help="(default 0)")
+    runs.add_argument("--frames", type=number(2, kind=int), metavar="N", help="only the first N images")
     runs.add_argument("--quick", action="store_true",
                       help=f"see whether everything works: {QUICK_SEQUENCES} sequences, one seed, "
                            f"{QUICK_FRAMES} images, two rows of each table and two degradations")
-    runs.add_argument("--timeout", type=float, default=3600.0, metavar="S",
-                      help="longest time of a run (default 3600 s)")
     runs.add_argument("--definitions", type=pathlib.Path, default=OWN / "tables.yaml",
                       metavar="FILE", help="what is run and what the tables show (default: "
                       "paper_tables/tables.yaml beside this script)")
-    runs.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
-                      help="(default: those of this installation or of build/release/bin)")
     work = parser.add_argument_group("work")
-    work.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
+    add_work_options(work, timeout=3600.0)
     work.add_argument("--profile", metavar="NAME", help="profile of Snakemake for a cluster: slurm, "
                       "or a folder with config.yaml")
-    work.add_argument("--list", action="store_true", help="print what would be run, and end")
     work.add_argument("--dry-run", action="store_true", help="print Snakemake's jobs, and end")
-    work.add_argument("--so-far", action="store_true",
-                      help="run nothing; tables of the runs that are done")
     work.add_argument("--retry-failed", action="store_true", help="repeat runs that have failed")
     work.add_argument("--compare", type=pathlib.Path, metavar="OLD.json",
                       help="compare with an older tables.json")
-    work.add_argument("--quiet", action="store_true", help="print only errors")
     arguments = parser.parse_args(words)
-    for name, low in (("seeds", 1), ("first_seed", 0), ("frames", 2), ("jobs", 1)):
-        value = getattr(arguments, name)
-        if value is not None and value < low:
-            parser.error(f"--{name.replace('_', '-')} is {value}, expected {low} or more")
-    if not 0.0 < arguments.timeout < 1e9:
-        parser.error("--timeout must be a number of seconds")
     if not (arguments.suite or arguments.data or arguments.sequence or arguments.sequences):
         parser.error("no sequences; give --suite synthetic, --data, --sequence or --sequences")
     return arguments

@@ -50,6 +50,17 @@ def parser_of(doc):
     return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def number(low, high=math.inf, kind=float):
+    """The type of an argument that is a number of a range."""
+    def number_of(text):
+        value = kind(text)
+        if not low <= value <= high:
+            limits = f"from {low:g} to {high:g}" if high < math.inf else f"of {low:g} or more"
+            raise argparse.ArgumentTypeError(f"is '{text}', expected a number {limits}")
+        return value
+    return number_of
+
+
 def check_program(doc, check_tree):
     """The program of a script that checks the repository: prints the faults that check_tree(root) finds,
     one line each. Returns 1 if there are any."""

@@ -27,7 +27,7 @@ import re
 import sys
 
 from paper_tables.figures import ask
-from support import exit_code, parser_of, programs_folder, read_json, run_program, SCRIPTS, Stopped
+from support import exit_code, number, parser_of, programs_folder, read_json, run_program, SCRIPTS, Stopped
 
 # First and last frame of each session, for a recording of 800 frames. The second sessions follow the
 # first one, overlap with it, come before it, and are short and long.
@@ -133,7 +133,8 @@ def print_scenes(rows):
 def measure(arguments):
     arguments.out.mkdir(parents=True, exist_ok=True)
     subjects = arguments.cut if arguments.kind == "still" else arguments.scene
-    for scene in subjects if arguments.kind == "scenes" else ():  # rendered before, since several runs need the same scene
+    # Rendered before, since several runs need the same scene.
+    for scene in subjects if arguments.kind == "scenes" else ():
         for is_rearranged in (False, True):
             render(arguments, scene, is_rearranged)
     pairs = [(recall, seed) for recall in arguments.recall
@@ -156,7 +157,7 @@ def main(words=None):
     still.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     for kind in (still, scenes):
         kind.add_argument("out", type=pathlib.Path, metavar="OUT")
-        kind.add_argument("--recall", type=int, nargs="+", default=[100], metavar="PERCENT",
+        kind.add_argument("--recall", type=number(1, 100, int), nargs="+", default=[100], metavar="PERCENT",
                           help="shares of the masks that are left, in %% (default 100)")
         kind.add_argument("--seeds", type=int, default=1, metavar="N",
                           help="runs for each recall below 100 (default 1)")
@@ -179,8 +180,6 @@ def main(words=None):
         for cut in arguments.cut:
             if not re.fullmatch(r"\d+:\d+,\d+:\d+", cut):
                 parser.error(f"--cut is '{cut}', expected four numbers of frames as in {CUTS[0]}")
-    if not all(1 <= recall <= 100 for recall in arguments.recall):
-        parser.error("--recall must be from 1 to 100")
     return exit_code(measure, arguments)
 
 

@@ -19,7 +19,7 @@ import subprocess
 
 from paper_tables.definitions import MODES
 from paper_tables.engine import DIGITS, RESULT_VERSION
-from support import SCRIPTS, InputError, hash_file, read_text
+from support import SCRIPTS, InputError, hash_file, number, programs_folder, read_text
 
 # The estimators of the modes and data sets.
 ESTIMATORS = {("rgbd", "tum"): "rgbd_tum", ("mono", "tum"): "mono_tum", ("rgbd", "icl"): "rgbd_icl",
@@ -51,6 +51,21 @@ def chosen(text, known, option):
         if name not in known:
             raise InputError(f"{option}: '{name}' is unknown, expected some of: {', '.join(known)}")
     return tuple(name for name in known if name in names)
+
+
+def add_work_options(parser, timeout):
+    """Adds the options of scripts that make runs."""
+    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
+                        help="the programs that are run (default: those of this installation or of "
+                             "build/release/bin)")
+    parser.add_argument("--jobs", type=number(1, kind=int), metavar="N",
+                        help="runs at once (default: one per core)")
+    parser.add_argument("--timeout", type=number(1e-3, 1e9), default=timeout, metavar="S",
+                        help=f"longest time of a run (default {timeout:g} s)")
+    parser.add_argument("--list", action="store_true", help="print what would be run, and end")
+    parser.add_argument("--so-far", action="store_true",
+                        help="run nothing; take the runs that are done")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 class Tools:

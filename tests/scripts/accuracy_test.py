@@ -248,7 +248,7 @@ class AccuracyTest(unittest.TestCase):
     def test_bad_usage(self):
         for arguments, part in ((["--only", "desk,chair"], "--only: 'chair' is unknown"),
                                 (["--only", ""], "--only: '' is unknown"),
-                                (["--jobs", "0"], "--jobs is 0"),
+                                (["--jobs", "0"], "--jobs: is '0'"),
                                 (["--timeout", "nan"], "--timeout"),
                                 (["--accept", "--quick"], "--accept needs all runs of its cases"),
                                 (["--compare", self.cases], "not valid JSON"),
