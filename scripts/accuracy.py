@@ -28,7 +28,7 @@ import sys
 from support import (exit_code, InputError, parser_of, programs_folder, require, SCRIPTS, try_read_json,
                      write)
 
-require("numpy", "yaml")
+require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import read_definitions  # noqa: E402
 from paper_tables.engine import (PLAN, make_all, read_results, result_file,  # noqa: E402
                                  stop_by_signals, table_lock)

@@ -28,7 +28,7 @@ import sys
 
 from support import exit_code, InputError, number, parser_of, read_json, require, SCRIPTS, write
 
-require("numpy", "yaml")
+require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
 from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
                                  result_file, stop_by_signals, table_lock)
