@@ -143,7 +143,9 @@ def read_checked(path, kind):
     checks = jsonschema.validators.extend(jsonschema.Draft202012Validator, {"one_of": names_keyword(known)})
     errors = list(checks(schema).iter_errors(content))
     if errors:
-        first = min(errors, key=lambda error: list(map(str, error.absolute_path)))
+        # Faults of names come first, because others follow from them.
+        first = min(errors, key=lambda error: ("propertyNames" not in error.absolute_schema_path,
+                                               list(map(str, error.absolute_path))))
         fail(path, first.absolute_path, describe(first))
     return content
 
