@@ -165,7 +165,8 @@ def make_table(path, name, entry, variants, degradations):
         fail(path, ("tables", name, "rows"), "expected one row or more, each with another variant")
     table = made(Table, name, {"baseline": names[0], **entry, "rows": rows})
     if table.baseline not in names:
-        fail(path, ("tables", name, "baseline"), f"is '{table.baseline}', expected one of: {', '.join(names)}")
+        fail(path, ("tables", name, "baseline"),
+             f"is '{table.baseline}', expected one of: {', '.join(names)}")
     if len(table.degradations) > 1 and any(degradations[key].unchanged for key in table.degradations):
         fail(path, ("tables", name, "degradations"), "expected one degradation, if it has the key unchanged")
     return table

@@ -24,7 +24,7 @@ def all_grids(report):
     """(level of the heading, grid) of all tables, in order."""
     for block in report.blocks:
         yield from zip((2, 3), grids(report, block))
-        if (order := ranking_grid(report, block)) is not None:
+        if (order := ranking_grid(block)) is not None:
             yield 3, order
     if report.claims:
         yield 2, claims_grid(report)

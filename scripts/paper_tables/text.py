@@ -2,9 +2,10 @@
 """What the Markdown and LaTeX files have in common: grids of short texts."""
 
 import dataclasses
+import statistics
 
 from paper_tables.figures import FIGURES
-from paper_tables.tables import COMPARED, MODE_TITLES, columns_of
+from paper_tables.tables import COMPARED, MODE_TITLES
 
 DASH = "–"
 
@@ -55,30 +56,26 @@ def entry_text(cell, column, figure):
 def best_rows(block, sequence, column, figure):
     """The rows with the best median of a sequence, to the digits that are shown."""
     medians = {cell["row"]: number(cell["figures"][column.key]["median"], figure)
-               for cell in block["sequences"][sequence] if cell["figures"].get(column.key)}
+               for cell in block.sequences[sequence] if cell["figures"].get(column.key)}
     if len(set(medians.values())) < 2 or figure.lower_is_better is None:
         return set()
     best = (min if figure.lower_is_better else max)(medians.values(), key=float)
     return {row for row, text in medians.items() if text == best}
 
 
-def overview_cell(report, block, sequence, cell, best):
+def overview_cell(block, cell, best):
     """The medians of the first figure, and the paper's figure in brackets."""
-    table = report.table(block)
-    key = table.figures[0]
-    figure = FIGURES[key]
-    columns = figure.columns[block["mode"]]
-    entries = [cell["figures"].get(column.key) for column in columns]
-    text = " / ".join(number(entry["median"] if entry else None, figure) for entry in entries)
+    key = block.table.figures[0]
+    entries = [cell["figures"].get(column.key) for column in FIGURES[key].columns[block.mode]]
+    text = " / ".join(number(entry["median"] if entry else None, FIGURES[key]) for entry in entries)
     if not any(entries):
         text = "failed" if cell["failures"] else DASH
     else:
         text += f" !{len(cell['failures'])}" if cell["failures"] else ""
         lost = cell["figures"].get("lost")
         text += f", {lost['median']:.1f} %" if lost and lost["median"] >= 0.05 else ""
-    paper = report.paper_figure(block, cell, sequence, key)
-    if paper is not None:
-        text += f" [{number(paper, figure)}]"
+    if cell["papers"][key] is not None:
+        text += f" [{number(cell['papers'][key], FIGURES[key])}]"
     return Text(text, cell["row"] in best)
 
 
@@ -89,29 +86,24 @@ def sequence_heading(report, name):
 
 def overview(report, block):
     """The grid with one row per system and one column per sequence."""
-    table = report.table(block)
-    figure = FIGURES[table.figures[0]]
-    columns = figure.columns[block["mode"]]
-    names = report.columns(block)
+    key, names = block.table.figures[0], report.columns(block)
+    columns = FIGURES[key].columns[block.mode]
+    labels = {row.variant: row.label for row in block.table.rows}
     head = ["", *(sequence_heading(report, name) if name else paper for name, paper in names),
-            "against " + next(row.label for row in table.rows if row.variant == table.baseline)]
+            f"against {labels[block.table.baseline]}"]
+    best = {name: best_rows(block, name, columns[0], FIGURES[key]) for name in block.sequences}
     rows = []
-    best = {name: best_rows(block, name, columns[0], figure) for name in block["sequences"]}
-    for index, row in enumerate(table.rows):
-        texts = [overview_cell(report, block, name, block["sequences"][name][index], best[name])
-                 if name else Text(DASH) for name, _ in names]
-        overall = block["overall"][row.variant]
-        rows.append([Text(row.label), *texts,
-                     Text(difference_text(overall["difference"], table.figures[0]))])
-    shown = " / ".join(column.heading for column in columns)
-    notes = [f"{shown}: medians of the runs that did not fail."]
-    if any(report.paper_figure(block, cell, name, table.figures[0]) is not None
-           for name, cells in block["sequences"].items() for cell in cells):
+    for index, (variant, label) in enumerate(labels.items()):
+        texts = [overview_cell(block, block.sequences[name][index], best[name]) if name else Text(DASH)
+                 for name, _ in names]
+        rows.append([Text(label), *texts, Text(difference_text(block.overall[variant]["difference"], key))])
+    notes = [f"{' / '.join(column.heading for column in columns)}: medians of the runs that did not fail."]
+    if any(cell["papers"][key] is not None for _, cell in block.cells):
         notes.append("In square brackets: the paper's figure, on the sequence of the paper.")
-    if any(cell["failures"] for cells in block["sequences"].values() for cell in cells):
+    if any(cell["failures"] for _, cell in block.cells):
         notes.append("!n: n runs failed.")
     notes.append("n %: so many frames have no pose (median of all runs), if any.")
-    return Grid(report.title(block), head, rows, notes)
+    return Grid(block.title, head, rows, notes)
 
 
 # ---- details: all figures of all sequences
@@ -119,91 +111,81 @@ def overview(report, block):
 
 def detail(report, block):
     """The grid with all figures, sequence by sequence."""
-    table = report.table(block)
-    columns = columns_of(table, block["mode"])
-    has_paper = {key for key in table.figures for name, cells in block["sequences"].items()
-                 for cell in cells if report.paper_figure(block, cell, name, key) is not None}
-    head = ["", *(column.heading for _, _, column in columns),
-            *(f"paper: {FIGURES[key].title}" for key in table.figures if key in has_paper), "runs"]
+    of_paper = [key for key in block.table.figures
+                if any(cell["papers"][key] is not None for _, cell in block.cells)]
+    head = ["", *(column.heading for _, _, column in block.columns),
+            *(f"paper: {FIGURES[key].title}" for key in of_paper), "runs"]
     rows = []
     for name, paper in report.columns(block):
         if name is None:
             rows.append([Text(paper), *(Text(DASH) for _ in head[1:])])
             continue
         rows.append([Text(sequence_heading(report, name))])
-        best = {column.key: best_rows(block, name, column, figure) for _, figure, column in columns}
-        for cell in block["sequences"][name]:
-            texts = [entry_text(cell, column, figure) for _, figure, column in columns]
-            for text, (_, _, column) in zip(texts, columns):
+        best = {column.key: best_rows(block, name, column, figure) for _, figure, column in block.columns}
+        for cell in block.sequences[name]:
+            texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
+            for text, (_, _, column) in zip(texts, block.columns):
                 text.is_best = cell["row"] in best[column.key]
-            papers = [report.paper_figure(block, cell, name, key) for key in table.figures
-                      if key in has_paper]
-            rows.append([Text(report.label(block, cell)), *texts,
-                         *(Text(number(value, FIGURES[key])) for value, key in zip(
-                             papers, [key for key in table.figures if key in has_paper])),
-                         Text(f"{cell['done']}" + "".join(f", {len(cell[key])} {told}" for key, told in (
-                             ("failures", "failed"), ("missing", "not run")) if cell[key]))])
-    return Grid(report.title(block) + ", all figures", head, rows,
-                [*shared_runs(report, block), *reasons(report, block), *failures(report, block)])
+            runs = f"{cell['done']}"
+            for key, told in ("failures", "failed"), ("missing", "not run"):
+                runs += f", {len(cell[key])} {told}" if cell[key] else ""
+            rows.append([Text(cell["label"]), *texts,
+                         *(Text(number(cell["papers"][key], FIGURES[key])) for key in of_paper), Text(runs)])
+    return Grid(f"{block.title}, all figures", head, rows,
+                [*shared_runs(report, block), *reasons(block), *failures(block)])
 
 
-def reasons(report, block):
+def reasons(block):
     """Why cells are empty."""
     found = {}
-    for name, cells in block["sequences"].items():
-        for cell in cells:
-            if not cell["runs"]:
-                found.setdefault(cell["reason"], {})[f"{name}, {report.label(block, cell)}"] = True
+    for name, cell in block.cells:
+        if not cell["runs"]:
+            found.setdefault(cell["reason"], {})[f"{name}, {cell['label']}"] = True
     return [f"{DASH} {reason}: {'; '.join(names)}." for reason, names in found.items()]
 
 
 def shared_runs(report, block):
     """The rows that show the runs of another variant, as the cameras have no rolling shutter."""
-    variants, found = report.definitions.variants, []
-    for row in report.table(block).rows:
+    variants = report.definitions.variants
+    for row in block.table.rows:
         other = variants[row.variant].same_as
-        names = [name for name in block["sequences"]
+        names = [name for name in block.sequences
                  if other and not report.sequences[name].has_rolling_shutter]
         if names:
-            found.append(f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
-                         f"shutter, on {', '.join(names)}.")
-    return found
+            yield (f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
+                   f"shutter, on {', '.join(names)}.")
 
 
-def failures(report, block):
+def failures(block):
     """Each failed run with its reason."""
     return [f"failed: {cell['runs'][seed]}: {reason}"
-            for cells in block["sequences"].values() for cell in cells
-            for seed, reason in sorted(cell["failures"].items())]
+            for _, cell in block.cells for seed, reason in sorted(cell["failures"].items())]
 
 
 def degradation_grid(report, block):
     """The grid of a table of degradations: a row for each level, columns for each system."""
-    table = report.table(block)
-    columns = columns_of(table, block["mode"])
+    table, known = block.table, report.definitions.degradations
     head = ["", "level", *(f"{row.label}: {column.heading}" for row in table.rows
-                           for _, _, column in columns)]
+                           for _, _, column in block.columns)]
     rows = []
-    for name, cells in block["sequences"].items():
+    for name, cells in block.sequences.items():
         rows.append([Text(sequence_heading(report, name))])
         for start in range(0, len(cells), len(table.rows)):
             group = cells[start:start + len(table.rows)]
-            level = report.level(block, group[0])
-            label, level = ("none", "") if level == "none" else (report.definitions.degradations[
-                group[0]["degradation"] or table.degradations[0]].label, level)
-            texts = [entry_text(cell, column, figure) for cell in group
-                     for _, figure, column in columns]
-            for cell, first in zip(group, range(0, len(texts), len(columns))):
-                if cell["failures"]:
-                    texts[first].text += f" !{len(cell['failures'])}"
-            rows.append([Text(label), Text(level), *texts])
-    return Grid(report.title(block), head, rows,
-                ["!n: n runs failed.", *reasons(report, block), *failures(report, block)])
+            of_row = known[group[0]["degradation"] or table.degradations[0]]
+            level = group[0]["level"] or of_row.unchanged  # None: of runs without a degradation
+            row = [Text(of_row.label if level else "none"), Text(level or "")]
+            for cell in group:
+                texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
+                texts[0].text += f" !{len(cell['failures'])}" if cell["failures"] else ""
+                row += texts
+            rows.append(row)
+    return Grid(block.title, head, rows, ["!n: n runs failed.", *reasons(block), *failures(block)])
 
 
 def grids(report, block):
     """All grids of a block of the report but that of the ranks."""
-    if report.table(block).degradations:
+    if block.table.degradations:
         return [degradation_grid(report, block)]
     return [overview(report, block), detail(report, block)]
 
@@ -225,17 +207,28 @@ def claims_grid(report):
                  "one of them with such a p; unclear: neither."])
 
 
-def ranking_grid(report, block):
-    """The order of the systems beside that of the paper; None if there are no common figures."""
-    found = report.ranking(block)
-    if len(found) < 2:
-        return None
-    labels = {row.variant: row.label for row in report.table(block).rows}
-    rows = [[Text(labels[name]), Text(f"{ours:.1f}"), Text(f"{theirs:.1f}")]
-            for name, ours, theirs in found]
-    return Grid(f"{report.title(block)}: order", ["", "mean rank", "mean rank in the paper"], rows,
+def ranking_grid(block):
+    """The order of the systems beside that of the paper, over the sequences for which both have all
+    figures; None for fewer than two systems.
+
+    The order is that of the means of the ranks within each sequence, so that the sequences count alike.
+    """
+    key, ranks = block.table.figures[0], {}
+    column, sign = FIGURES[key].columns[block.mode][-1].key, 1.0 if FIGURES[key].lower_is_better else -1.0
+    for cells in block.sequences.values():
+        pairs = {cell["label"]: (cell["figures"][column]["median"], cell["papers"][key]) for cell in cells
+                 if cell["papers"][key] is not None and cell["figures"].get(column)}
+        for index in (0, 1) if len(pairs) > 1 else ():
+            order = sorted(pairs, key=lambda label, i=index: sign * pairs[label][i])
+            for rank, label in enumerate(order, 1):
+                ranks.setdefault(label, ([], []))[index].append(rank)
+    means = [(row.label, *map(statistics.fmean, ranks[row.label])) for row in block.table.rows
+             if row.label in ranks]
+    rows = [[Text(label), Text(f"{ours:.1f}"), Text(f"{theirs:.1f}")]
+            for label, ours, theirs in sorted(means, key=lambda row: row[1])]
+    return Grid(f"{block.title}: order", ["", "mean rank", "mean rank in the paper"], rows,
                 ["Ranks within each sequence, by the medians; over the sequences for which both "
-                 "have figures."])
+                 "have figures."]) if len(rows) > 1 else None
 
 
 def comparison_grid(found, labels):

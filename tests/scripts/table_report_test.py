@@ -112,12 +112,12 @@ class ReportTest(unittest.TestCase):
 
     def test_failed_runs_are_counted_and_not_in_the_median(self):
         block = self.report().blocks[0]
-        cell, = [cell for cell in block["sequences"]["desk"] if cell["row"] == "bad"]
+        cell, = [cell for cell in block.sequences["desk"] if cell["row"] == "bad"]
         self.assertEqual(cell["figures"]["ate_se3"]["values"], {0: 0.020, 1: 0.022})
         self.assertEqual(cell["figures"]["lost"]["values"], {0: 0.0, 1: 0.0, 2: 50.0})
         self.assertEqual(list(cell["failures"]), [2])
-        self.assertEqual(block["overall"]["bad"]["failed"], 2)
-        change = block["overall"]["bad"]["difference"]
+        self.assertEqual(block.overall["bad"]["failed"], 2)
+        change = block.overall["bad"]["difference"]
         self.assertEqual((round(change["change"], 6), change["pairs"]), (1.0, 4))
 
     def test_claims(self):
@@ -132,10 +132,10 @@ class ReportTest(unittest.TestCase):
     def test_ranks_beside_those_of_the_paper(self):
         report = self.report()
         self.results["desk/rgbd/good/seed-1"]["figures"]["ate_sim3"] = 0.5
-        rows = ranking_grid(report, report.blocks[0]).rows
+        rows = ranking_grid(report.blocks[0]).rows
         self.assertEqual([[item.text for item in row] for row in rows],
                          [["points only", "1.0", "2.0"], ["good", "2.0", "1.0"]])
-        self.assertIsNone(ranking_grid(report, report.blocks[1]), "the paper has no such figures")
+        self.assertIsNone(ranking_grid(report.blocks[1]), "the paper has no such figures")
 
     def test_markdown(self):
         text = files.markdown(self.report())
