@@ -73,14 +73,10 @@ def depth_holes(depth, share, rng, _):
     return depth
 
 
-def resize_image(image, size, *_):
+def resize(image, size, *_):
     import cv2
-    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
-
-
-def resize_depth(depth, size, *_):
-    import cv2
-    return cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST)  # no mean of two surfaces
+    is_depth = image.ndim == 2  # the mean of two surfaces would be no surface
+    return cv2.resize(image, size, interpolation=cv2.INTER_NEAREST if is_depth else cv2.INTER_AREA)
 
 
 # ---- masks: functions (masks, amount, random numbers, classes of the sequence, size) -> masks
@@ -168,7 +164,7 @@ DISTURBANCES = [
     Disturbance("depth-holes", SHARE, "SHARE", f"this share of the squares of {HOLE} px of a depth "
                 "image has no depth", {"depth": depth_holes}),
     Disturbance("resize", image_size, "WxH", "images and depth get this size, in px; the settings of "
-                "the camera must then be others", {"image": resize_image, "depth": resize_depth}),
+                "the camera must then be others", {"image": resize, "depth": resize}),
     Disturbance("mask-shift", number(0.0, 1e4), "PX",
                 "each mask is moved by PX px in a random direction", {"masks": mask_shift}),
     Disturbance("mask-drop", SHARE, "SHARE", "this share of the masks is missing",

@@ -46,12 +46,6 @@ FIGURES = {
 }
 
 
-def lost_percent(summary):
-    """The share of the frames without a pose; None if it is not known."""
-    frames, tracked = (value_at(summary, "trajectory", key) for key in ("frames", "tracked"))
-    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
-
-
 def of_true_objects(report):
     """The figures of the comparison with true objects, from the report of `evaluate objects`."""
     once, more, visible = (value_at(report, "groundtruth", key) for key in ("once", "more", "visible"))
@@ -75,7 +69,9 @@ def ask(*command):
 def evaluate(program, run, folder, summary):
     """The figures of a finished run in `folder`. `program` is hullslam."""
     out, truth, scale = folder / "out", folder / "groundtruth.txt", 1.0
-    figures = {"lost": lost_percent(summary), "frames": value_at(summary, "trajectory", "frames"),
+    frames, tracked = (value_at(summary, "trajectory", key) for key in ("frames", "tracked"))
+    figures = {"lost": 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None,
+               "frames": frames,
                "keyframes": value_at(summary, "map", "keyframes"), "loops": value_at(summary, "map", "loops")}
     for file, prefix in (("trajectory.txt", ""), ("keyframes.txt", "keyframes_")):
         for alignment in ("se3", "sim3")[run["mode"] == "mono":] if truth.exists() else ():
