@@ -9,7 +9,6 @@ with modules.toml, or if a picture lacks a text of its .dot file.
 """
 
 import html
-import pathlib
 import re
 import shutil
 import subprocess
@@ -110,8 +109,8 @@ def draw(folder, levels):
 
 def run(arguments):
     if not arguments.check:
-        return draw(arguments.images, LEVELS)
-    if found := faults(arguments.images, LEVELS):
+        return draw(IMAGES, LEVELS)
+    if found := faults(IMAGES, LEVELS):
         print("\n".join([*found, "run scripts/draw_architecture.py"]), file=sys.stderr)
     return 1 if found else 0
 
@@ -119,6 +118,4 @@ def run(arguments):
 if __name__ == "__main__":
     parser = parser_of(__doc__)
     parser.add_argument("--check", action="store_true", help="only compare the stored pictures")
-    parser.add_argument("--images", type=pathlib.Path, default=IMAGES, metavar="DIR",
-                        help="folder of the .dot and .svg files (default: docs/images)")
     sys.exit(exit_code(run, parser.parse_args()))

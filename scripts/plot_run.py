@@ -39,12 +39,12 @@ NEEDED = tuple(f"{part} left out" for part in ("trajectory", "keyframes", "landm
 
 def link_run(arguments, folder):
     """Makes a run in `folder` from links, with the given ground truth and sequence."""
-    for path in arguments.run_dir.iterdir():
-        if path.name not in ("summary.json", "groundtruth.txt", "report.html"):
-            (folder / path.name).symlink_to(path.resolve())
-    truth = arguments.groundtruth or arguments.run_dir / "groundtruth.txt"
-    if truth.exists():
-        (folder / "groundtruth.txt").symlink_to(truth.resolve())
+    files = {path.name: path for path in arguments.run_dir.iterdir()
+             if path.name not in ("summary.json", "report.html")}
+    if arguments.groundtruth:
+        files["groundtruth.txt"] = arguments.groundtruth
+    for name, path in files.items():
+        (folder / name).symlink_to(path.resolve())
     summary = read_json(arguments.run_dir / "summary.json")
     if arguments.sequence:
         summary.setdefault("provenance", {})["sequence"] = str(arguments.sequence.resolve())
@@ -82,10 +82,8 @@ def read_report(arguments):
 
 def rotation(quaternion):
     """The matrix of a quaternion qx, qy, qz, qw."""
-    x, y, z, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    *v, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
+    return (2 * w * w - 1) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(np.eye(3), v)
 
 
 class Run:

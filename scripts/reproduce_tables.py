@@ -87,7 +87,7 @@ def quick_table(table, known):
     rows = tuple(row for row in table.rows if row.variant == table.baseline or row is other)
     by_kind = {bool(known[name].options): name for name in reversed(table.degradations)}
     degradations = tuple(name for name in table.degradations if name in by_kind.values())
-    return dataclasses.replace(table, rows=rows, degradations=degradations)
+    return table.with_changes(rows=rows, degradations=degradations)
 
 
 def suite_cache(arguments, tools):
@@ -99,7 +99,7 @@ def suite_cache(arguments, tools):
 def make_request(arguments, tools, suite):
     definitions = read_definitions(arguments.definitions)
     if arguments.quick:
-        definitions = dataclasses.replace(definitions, tables={
+        definitions = definitions.with_changes(tables={
             name: quick_table(table, definitions.degradations)
             for name, table in definitions.tables.items()})
     frames = arguments.frames or (QUICK_FRAMES if arguments.quick else None)

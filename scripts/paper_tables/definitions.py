@@ -2,8 +2,9 @@
 """Reads the definitions of experiments: tables.yaml (variants, what each table shows, what gets worse)
 and accuracy.yaml (the cases of the gate)."""
 
-import dataclasses
+import functools
 import pathlib
+import types
 
 import jsonschema
 import yaml
@@ -13,89 +14,21 @@ from support import InputError, one_line, read_text
 
 MODES = ("rgbd", "mono")  # of tables
 ALL_MODES = (*MODES, "stereo")  # of cases of the gate
-SCHEMA = pathlib.Path(__file__).with_name("definitions_schema.yaml")
 NAMED = ("variants", "degradations", "paper_sequences", "renderings")  # keys whose names others use
 TYPES = {"object": "a map of keys and values", "array": "a list", "boolean": "true or false"}
-SOURCES = ("recorded", "suite", "rendering")
 
 
-@dataclasses.dataclass(frozen=True)
-class Variant:
-    name: str
-    label: str
-    arguments: tuple = ()
-    masks: bool = True
-    objects: bool = True  # whether it maps objects
-    modes: tuple = ALL_MODES
-    same_as: str = None  # the variant whose runs it shares without a rolling shutter
+class Definition(types.SimpleNamespace):
+    """A variant, a table and so on: a name and the keys of the file. definitions_schema.yaml has the
+    meanings of the keys and their defaults."""
+
+    def with_changes(self, **values):
+        return Definition(**{**vars(self), **values})
 
 
-@dataclasses.dataclass(frozen=True)
-class Row:
-    variant: str
-    label: str
-    paper: str = None  # the name of the row in paper_tables.json
-
-
-@dataclasses.dataclass(frozen=True)
-class Degradation:
-    name: str
-    label: str
-    levels: tuple
-    arguments: tuple = ()  # of the program
-    options: tuple = ()  # of degrade_sequence.py
-    only_with_objects: bool = False
-    modes: tuple = ALL_MODES
-    unchanged: str = None  # the level of runs without it, if it is one of a scale
-
-
-@dataclasses.dataclass(frozen=True)
-class Table:
-    name: str
-    title: str
-    rows: tuple
-    figures: tuple
-    baseline: str
-    modes: tuple = MODES
-    paper: str = None
-    only: tuple = None  # the sequences of the paper that it has; None: all sequences
-    sequences: int = None  # the largest number of sequences; None: no limit
-    degradations: tuple = ()
-
-
-@dataclasses.dataclass(frozen=True)
-class Claim:
-    text: str
-    figure: str
-    better: str
-    than: tuple
-
-
-@dataclasses.dataclass(frozen=True)
-class Case:
-    name: str
-    source: str  # one of SOURCES
-    sequence: str
-    variants: tuple
-    seeds: tuple = (0,)  # of renderings; (None,) for a recorded sequence
-    first: tuple = (0,)
-    last: int = None
-    degradation: str = None
-    modes: tuple = MODES
-
-
-@dataclasses.dataclass(frozen=True)
-class Definitions:
-    variants: dict
-    degradations: dict
-    paper_sequences: dict = dataclasses.field(default_factory=dict)  # name -> end of the folder's name
-    tables: dict = dataclasses.field(default_factory=dict)
-    claims: tuple = ()
-    renderings: dict = dataclasses.field(default_factory=dict)  # name -> options of make_synthetic
-    cases: dict = dataclasses.field(default_factory=dict)
-
-
-# ---- the file
+@functools.cache
+def read_schema():
+    return yaml.safe_load(read_text(pathlib.Path(__file__).with_name("definitions_schema.yaml")))
 
 
 def names_keyword(known):
@@ -139,7 +72,7 @@ def read_checked(path, kind):
     named = {key: content.get(key) for key in NAMED} if isinstance(content, dict) else {}
     known = {key: list(map(str, value)) if isinstance(value, dict) else [] for key, value in named.items()}
     known |= {"figures": list(FIGURES), "modes": MODES if kind == "tables" else ALL_MODES}
-    schema = yaml.safe_load(read_text(SCHEMA)) | {"$ref": f"#/$defs/{kind}_file"}
+    schema = read_schema() | {"$ref": f"#/$defs/{kind}_file"}
     checks = jsonschema.validators.extend(jsonschema.Draft202012Validator, {"one_of": names_keyword(known)})
     errors = list(checks(schema).iter_errors(content))
     if errors:
@@ -151,19 +84,21 @@ def read_checked(path, kind):
 
 
 def made(kind, name, values):
-    """A definition from the values of the file."""
-    return kind(name=name, **{
+    """A definition from the values of the file; lists become tuples."""
+    properties = read_schema()["$defs"][kind]["properties"]
+    defaults = {key: of_key.get("default") for key, of_key in properties.items()}
+    return Definition(name=name, **{
         key: tuple(map(str, value)) if key in ("arguments", "options", "levels") else
-        tuple(value) if isinstance(value, list) else value for key, value in values.items()})
+        tuple(value) if isinstance(value, list) else value for key, value in (defaults | values).items()})
 
 
 def make_table(path, name, entry, variants, degradations):
     rows = [{"variant": row} if isinstance(row, str) else row for row in entry["rows"]]
-    rows = tuple(Row(**{"label": variants[row["variant"]].label, **row}) for row in rows)
+    rows = [made("row", row["variant"], {"label": variants[row["variant"]].label, **row}) for row in rows]
     names = [row.variant for row in rows]
     if not names or len(set(names)) != len(names):
         fail(path, ("tables", name, "rows"), "expected one row or more, each with another variant")
-    table = made(Table, name, {"baseline": names[0], **entry, "rows": rows})
+    table = made("table", name, {"baseline": names[0], **entry, "rows": rows})
     if table.baseline not in names:
         fail(path, ("tables", name, "baseline"),
              f"is '{table.baseline}', expected one of: {', '.join(names)}")
@@ -173,26 +108,26 @@ def make_table(path, name, entry, variants, degradations):
 
 
 def make_case(name, entry, variants):
-    source = next(key for key in SOURCES if key in entry)
-    others = {key: value for key, value in entry.items() if key != source}
-    seeds = {"seeds": (None,)} if source == "recorded" else {}
-    return made(Case, name, {"source": source, "sequence": entry[source], "variants": tuple(variants),
-                             **seeds, **others})
+    """A case, with the key of its sequence as `source` and its value as `sequence`."""
+    source = next(key for key in ("recorded", "suite", "rendering") if key in entry)
+    seeds = {"seeds": [None]} if source == "recorded" else {}
+    return made("case", name, {"variants": list(variants), **seeds, **entry, "source": source,
+                               "sequence": entry[source]})
 
 
 def read_definitions(path, kind="tables"):
-    """The Definitions in a file like tables.yaml or, with the kind "cases", accuracy.yaml."""
+    """The definitions in a file like tables.yaml or, with the kind "cases", accuracy.yaml."""
     content = read_checked(path, kind)
     found = {key: content.get(key) or {} for key in (*NAMED, "tables", "cases")}
-    variants = {name: made(Variant, name, {"label": name, "objects": entry.get("masks", True), **entry})
+    variants = {name: made("variant", name, {"label": name, "objects": entry.get("masks", True), **entry})
                 for name, entry in found["variants"].items()}
-    degradations = {name: made(Degradation, name, entry | (
+    degradations = {name: made("degradation", name, entry | (
         {"unchanged": str(entry["unchanged"])} if "unchanged" in entry else {}))
         for name, entry in found["degradations"].items()}
-    return Definitions(
-        variants, degradations, found["paper_sequences"],
-        {name: make_table(path, name, entry, variants, degradations)
-         for name, entry in found["tables"].items()},
-        tuple(Claim(**{**claim, "than": tuple(claim["than"])}) for claim in content.get("claims") or ()),
-        {name: tuple(map(str, options)) for name, options in found["renderings"].items()},
-        {name: make_case(name, entry, variants) for name, entry in found["cases"].items()})
+    return Definition(
+        variants=variants, degradations=degradations, paper_sequences=found["paper_sequences"],
+        tables={name: make_table(path, name, entry, variants, degradations)
+                for name, entry in found["tables"].items()},
+        claims=[made("claim", None, claim) for claim in content.get("claims") or ()],
+        renderings={name: tuple(map(str, options)) for name, options in found["renderings"].items()},
+        cases={name: make_case(name, entry, variants) for name, entry in found["cases"].items()})

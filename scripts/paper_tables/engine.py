@@ -138,9 +138,7 @@ def failure_of(code, message, seconds):
     """Why a run counts as failed; None if it has succeeded."""
     if code is None:
         return f"not finished after {seconds:g} s"
-    if code < 0:
-        return f"crashed with {signal.Signals(-code).name}"
-    return None if code == 0 else message
+    return f"crashed with {signal.Signals(-code).name}" if code < 0 else message if code > 0 else None
 
 
 def work_off(jobs, count, look=lambda: None):
@@ -179,15 +177,6 @@ def folder_output(name, folder):
     return name if folder["kind"] == "degraded" else f"{name}.made-{folder['fingerprint'][:DIGITS]}"
 
 
-def keep_groundtruth(run, folder):
-    """Copies the true trajectory beside the run, because degraded sequences are removed later."""
-    source = pathlib.Path(run["groundtruth"] or folder / "out" / "groundtruth.txt")
-    target = folder / "groundtruth.txt"
-    target.unlink(missing_ok=True)
-    if source.is_file():
-        shutil.copyfile(source, target)
-
-
 def make_run(plan, name):
     """Makes a run and writes its result, unless the result is there already."""
     run = plan["runs"][name]
@@ -195,7 +184,7 @@ def make_run(plan, name):
     with locked(folder / ".lock"):
         if (try_read_json(result) or {}).get("fingerprint") == run["fingerprint"]:
             return
-        for old in [*folder.glob("result-*"), folder / ERROR]:
+        for old in [*folder.glob("result-*"), folder / ERROR, folder / "groundtruth.txt"]:
             old.unlink(missing_ok=True)
         shutil.rmtree(folder / "out", ignore_errors=True)
         code = PROGRAMS.run([*run["command"], "--output", str(folder / "out")], plan["timeout"],
@@ -206,7 +195,9 @@ def make_run(plan, name):
         provenance = summary.get("provenance") or {}
         if provenance.get("interrupted"):
             raise Stopped("the program was interrupted")
-        keep_groundtruth(run, folder)
+        truth = pathlib.Path(run["groundtruth"] or folder / "out" / "groundtruth.txt")
+        if truth.is_file():  # kept beside the run, because degraded sequences are removed later
+            shutil.copyfile(truth, folder / "groundtruth.txt")
         content = {"version": RESULT_VERSION, "fingerprint": run["fingerprint"],
                    "failure": failure_of(code, message, plan["timeout"]),
                    **{key: provenance.get(key) for key in ("preset", "git", "settings_hash")},
@@ -289,12 +280,10 @@ class Progress:
 
     def __init__(self, plan, jobs, is_quiet):
         self.is_quiet, self.count = is_quiet, len(plan["runs"])
-        self.missing = {}  # output -> weight
-        for name in jobs:
-            run, folder = plan["runs"].get(name), plan["folders"].get(name)
-            output = result_file(name, run) if run else folder_output(name, folder)
-            weight = 1.0 if run else WEIGHTS[folder["kind"]]
-            self.missing[output] = weight * ((run or folder)["frames"] or 1)
+        self.missing = {  # output -> weight
+            **{result_file(name, run): run["frames"] or 1 for name, run in plan["runs"].items() if name in jobs},
+            **{folder_output(name, folder): WEIGHTS[folder["kind"]] * (folder["frames"] or 1)
+               for name, folder in plan["folders"].items() if name in jobs}}
         self.begin, self.total = time.monotonic(), sum(self.missing.values())
         self.last, self.shown = -LINE_EVERY, ""  # so that the first line comes at once
 
@@ -318,9 +307,8 @@ class Progress:
 
 def duration(seconds):
     minutes = round(seconds / 60.0)
-    if minutes < 1:
-        return f"{max(1, round(seconds))} s"
-    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
+    return f"{minutes // 60} h {minutes % 60} min" if minutes >= 90 else \
+        f"{minutes} min" if minutes >= 1 else f"{max(1, round(seconds))} s"
 
 
 # ---- a whole plan
@@ -396,7 +384,7 @@ def run_snakemake(plan, jobs, profile, progress):
 
 def error_file(kind, name):
     """Where a job of Snakemake writes why it could not be made."""
-    return pathlib.Path("runs") / name / ERROR if kind == "run" else pathlib.Path(f"{name}.{ERROR}")
+    return pathlib.Path(f"runs/{name}/{ERROR}" if kind == "run" else f"{name}.{ERROR}")
 
 
 def job(words):
