@@ -22,10 +22,9 @@ Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped,
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from support import (exit_code, InputError, parser_of, programs_folder, require, SCRIPTS, try_read_json,
+from support import (call, exit_code, InputError, parser_of, programs_folder, require, SCRIPTS, try_read_json,
                      write)
 
 require("jsonschema", "numpy", "yaml")
@@ -138,8 +137,7 @@ def commit_to_accept(renderings):
     that they can be made again."""
     if not renderings.program.resolve().is_relative_to(TOP):
         raise InputError(f"--accept: {renderings.program} is not a program of {TOP}")
-    result = subprocess.run(["git", "-C", str(TOP), "describe", "--always", "--dirty"],
-                            capture_output=True, text=True, check=False)
+    result = call("git", "-C", TOP, "describe", "--always", "--dirty")
     if result.returncode != 0:
         raise InputError(f"--accept: {TOP} is no checkout of git")
     if result.stdout.strip().endswith("-dirty"):

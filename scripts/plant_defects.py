@@ -32,7 +32,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import exit_code, InputError, number, parser_of, read_text
+from support import call, exit_code, InputError, number, parser_of, read_text
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 MARK = "copy_of_plant_defects"  # a file in the copy
@@ -62,7 +62,7 @@ def read_defects(path, names):
 
 def git(top, *words):
     """What git prints about the tree."""
-    result = subprocess.run(["git", *words], cwd=top, capture_output=True, text=True, check=False)
+    result = call("git", *words, cwd=top)
     if result.returncode != 0:
         raise InputError(f"git {' '.join(words)} in {top}: {result.stderr.strip()}")
     return result.stdout

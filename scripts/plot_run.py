@@ -17,12 +17,11 @@ import io
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
-from support import (exit_code, InputError, number, one_line, parser_of, programs_folder, read_json, require,
-                     value_at)
+from support import (call, exit_code, InputError, number, one_line, parser_of, programs_folder,
+                     read_json, require, value_at)
 
 require("numpy", "matplotlib")
 import matplotlib  # noqa: E402
@@ -56,8 +55,7 @@ def make_report(run_dir, page):
     if not program.is_file():
         raise InputError(f"{program}: no such program; build it (cmake --build --preset release "
                          "--target hullslam_program), or run with --report")
-    command = [program, "view", run_dir, "--report", "--output", page, "--quiet"]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    result = call(program, "view", run_dir, "--report", "--output", page, "--quiet")
     if result.returncode != 0:
         raise InputError(one_line(result.stderr.strip().removeprefix("error: ") or "no message", 400))
 

@@ -52,21 +52,14 @@ def recorded_sequences(arguments, definitions, config):
         texts += map(str, found)
         for path in others:
             print(f"note: {path} is no sequence and is left out", file=sys.stderr)
-    folders = dict.fromkeys(texts)
     return [read_sequence(text, arguments.masks, definitions.paper_sequences, config)
-            for text in folders]
+            for text in dict.fromkeys(texts)]
 
 
 def select(sequences, only):
     """The sequences that --only names, by their own name or that of the paper."""
-    if only is None:
-        return sequences
-    names = {name.strip() for name in only.split(",")}
     known = [name for sequence in sequences for name in (sequence.name, sequence.paper) if name]
-    for name in sorted(names):
-        if name not in known:
-            raise InputError(f"--only: '{name}' is unknown, expected some of: "
-                             f"{', '.join(dict.fromkeys(known))}")
+    names = set(chosen(only, dict.fromkeys(known), "--only")) if only is not None else set(known)
     return [sequence for sequence in sequences if {sequence.name, sequence.paper} & names]
 
 

@@ -14,10 +14,9 @@ import collections
 import json
 import math
 import pathlib
-import subprocess
 import sys
 
-from support import exit_code, InputError, parser_of, programs_folder, read_json
+from support import call, exit_code, InputError, parser_of, programs_folder, read_json
 
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
@@ -130,8 +129,7 @@ def make_questions(scene, truth, matched, count):
 
 
 def ask(program, run, text):
-    done = subprocess.run([program, "query", str(run), text, "--json"], capture_output=True, text=True,
-                          check=False)
+    done = call(program, "query", run, text, "--json")
     if done.returncode == 1:
         return None
     if done.returncode != 0:

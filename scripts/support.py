@@ -93,6 +93,11 @@ def programs_folder():
     return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
 
 
+def call(*command, **options):
+    """The result of a program, with all that it prints."""
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, **options)
+
+
 def run_program(command, log, **options):
     """The exit code of a program, whose messages go to the file `log`."""
     with log.open("w", encoding="utf-8") as messages:

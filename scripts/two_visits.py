@@ -96,8 +96,8 @@ def measure_one(arguments, subject, recall, seed):
     row = {"cut" if arguments.kind == "still" else "scene": subject, "recall": recall, "seed": seed,
            **{kind: int(changes.get(kind, 0)) for kind in KINDS}}
     if arguments.kind == "scenes":
-        told = ask(str(arguments.programs / "hullslam"), "evaluate", "objects", str(out / "second"),
-                   "--groundtruth", str(sessions[1][0] / "groundtruth_objects.json"), "--json")
+        told = ask(arguments.programs / "hullslam", "evaluate", "objects", out / "second", "--groundtruth",
+                   sessions[1][0] / "groundtruth_objects.json", "--json")
         if not told:
             raise Stopped(f"{out / 'second'}: cannot be compared with the true objects")
         row |= {f"{kind} {figure}": told["groundtruth"]["changes"][kind][figure]

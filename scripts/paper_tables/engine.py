@@ -20,7 +20,7 @@ import threading
 import time
 
 from paper_tables.figures import evaluate
-from support import InputError, Stopped, one_line, try_read_json, write
+from support import InputError, Stopped, call, one_line, try_read_json, write
 
 DIGITS = 16  # of a fingerprint in the name of a file
 RESULT_VERSION = 1  # of the files that runs leave; a new one repeats all runs
@@ -280,10 +280,10 @@ class Progress:
 
     def __init__(self, plan, jobs, is_quiet):
         self.is_quiet, self.count = is_quiet, len(plan["runs"])
-        self.missing = {  # output -> weight
-            **{result_file(name, run): run["frames"] or 1 for name, run in plan["runs"].items() if name in jobs},
-            **{folder_output(name, folder): WEIGHTS[folder["kind"]] * (folder["frames"] or 1)
-               for name, folder in plan["folders"].items() if name in jobs}}
+        weights = {result_file(name, run): run["frames"] for name, run in plan["runs"].items() if name in jobs}
+        weights |= {folder_output(name, folder): WEIGHTS[folder["kind"]] * folder["frames"]
+                    for name, folder in plan["folders"].items() if name in jobs}
+        self.missing = {output: max(weight, 1) for output, weight in weights.items()}
         self.begin, self.total = time.monotonic(), sum(self.missing.values())
         self.last, self.shown = -LINE_EVERY, ""  # so that the first line comes at once
 
@@ -357,8 +357,7 @@ def snakemake_command(jobs, profile, is_dry_run=False):
 
 def describe_dry_run(out, jobs, profile):
     """What Snakemake would do."""
-    result = subprocess.run(snakemake_command(jobs, profile, True), cwd=out, capture_output=True,
-                            text=True, check=False)
+    result = call(*snakemake_command(jobs, profile, True), cwd=out)
     if result.returncode != 0:
         raise Stopped(f"the dry run of Snakemake has failed: {result.stderr.strip()[-500:]}")
     return result.stdout.strip()

@@ -4,9 +4,8 @@
 import dataclasses
 import json
 import shlex
-import subprocess
 
-from support import Stopped, one_line, value_at
+from support import Stopped, call, one_line, value_at
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,11 +58,11 @@ def of_true_objects(report):
 
 def ask(*command):
     """The JSON report of an evaluation; {} if it refuses its input, for example no poses."""
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    result = call(*command)
     try:
         return json.loads(result.stdout) if result.returncode == 0 else {}
     except ValueError as error:
-        raise Stopped(f"{shlex.join(command)}: has printed no JSON: {one_line(error)}") from error
+        raise Stopped(f"{shlex.join(map(str, command))}: has printed no JSON: {one_line(error)}") from error
 
 
 def evaluate(program, run, folder, summary):
@@ -75,8 +74,7 @@ def evaluate(program, run, folder, summary):
                "keyframes": value_at(summary, "map", "keyframes"), "loops": value_at(summary, "map", "loops")}
     for file, prefix in (("trajectory.txt", ""), ("keyframes.txt", "keyframes_")):
         for alignment in ("se3", "sim3")[run["mode"] == "mono":] if truth.exists() else ():
-            report = ask(program, "evaluate", "trajectory", str(truth), str(out / file), "--align", alignment,
-                         "--json")
+            report = ask(program, "evaluate", "trajectory", truth, out / file, "--align", alignment, "--json")
             figures[f"{prefix}ate_{alignment}"] = value_at(report, "ate_m", "rmse")
             if run["mode"] == "mono" and not prefix:
                 scale = value_at(report, "scale")
@@ -89,6 +87,6 @@ def evaluate(program, run, folder, summary):
                 "siou_mask": value_at(summary, "objects", "siou_mask_mean"),
                 "mtd": None if mtd is None or scale is None else mtd * scale**2}
     if run["objects"] is not None:
-        figures |= of_true_objects(ask(program, "evaluate", "objects", str(out), "--groundtruth",
+        figures |= of_true_objects(ask(program, "evaluate", "objects", out, "--groundtruth",
                                        run["objects"], "--json"))
     return figures

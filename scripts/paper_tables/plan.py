@@ -15,11 +15,10 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 
 from paper_tables.definitions import MODES
 from paper_tables.engine import DIGITS, RESULT_VERSION
-from support import SCRIPTS, InputError, hash_file, number, programs_folder, read_text
+from support import SCRIPTS, InputError, call, hash_file, number, programs_folder, read_text
 
 # The estimators of the modes and data sets.
 ESTIMATORS = {("rgbd", "tum"): "rgbd_tum", ("mono", "tum"): "mono_tum", ("rgbd", "icl"): "rgbd_icl",
@@ -134,8 +133,7 @@ def libraries(program):
     with program.open("rb") as file:
         if file.read(4) != b"\x7fELF":
             return []
-    found = subprocess.run(["ldd", program], capture_output=True, text=True, check=False).stdout
-    return [pathlib.Path(path) for path in re.findall(r"=> (\S*/libhullslam\S*)", found)]
+    return list(map(pathlib.Path, re.findall(r"=> (\S*/libhullslam\S*)", call("ldd", program).stdout)))
 
 
 # ---- one run

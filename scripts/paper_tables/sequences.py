@@ -7,10 +7,9 @@ import hashlib
 import json
 import pathlib
 import re
-import subprocess
 import tempfile
 
-from support import InputError, hash_file, one_line, read_json, read_text, try_read_json
+from support import InputError, call, hash_file, one_line, read_json, read_text, try_read_json
 from tum_and_icl import read_rows
 
 PNG_END, JPEG_END = b"IEND\xaeB`\x82", b"\xff\xd9"
@@ -254,7 +253,7 @@ def in_order(sequences, paper_sequences):
 
 def call_renderer(program, options):
     """Renders a sequence or a suite. make_synthetic leaves a folder only when it is complete."""
-    result = subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    result = call(program, *options)
     if result.returncode != 0:
         raise InputError(f"{program} {' '.join(options)}: "
                          f"{one_line(result.stderr.strip() or 'has failed', 300)}")

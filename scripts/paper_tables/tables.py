@@ -267,8 +267,9 @@ class Report:
                     entry = cell["figures"].get(column.key) or {}
                     paper = cell["papers"][key] if column is figure.columns[block.mode][-1] else None
                     values = [*(entry.get(name) for name in ("median", "min", "max")), paper]
-                    *spread_of, paper = ("" if value is None else f"{value * figure.factor:.{figure.digits + 1}f}"
-                                         for value in values)
+                    *spread_of, paper = (
+                        "" if value is None else f"{value * figure.factor:.{figure.digits + 1}f}"
+                        for value in values)
                     writer.writerow([
                         block.table.name, block.mode, sequence, self.plays[sequence] or "", cell["label"],
                         cell["degradation"] or "", cell["level"] or "", column.heading, *spread_of,
