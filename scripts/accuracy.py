@@ -112,8 +112,7 @@ def build_name(report):
 def compare(old, new, out, is_accepted):
     """Prints and writes the comparison. Returns whether something got worse. Figures that are accepted
     may all be new."""
-    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
-                            new["runs"])
+    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run}, new["runs"])
     if not comparison.common and not is_accepted:
         raise InputError("no run is in both reports with the same input, so there is nothing to compare")
     lines = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])

@@ -35,8 +35,7 @@ def in_order(folder, name, done, open_modules):
         in_order(folder, other, done, [*open_modules, name])
         exported = {match[1] for match in TOP_NAME.finditer(done[other]) if match[0].startswith("export")}
         if missing := {word.strip() for word in names.split(",") if word.strip()} - exported:
-            raise InputError(f"{path}: imports {', '.join(sorted(missing))}, which {other} does not "
-                            "export")
+            raise InputError(f"{path}: imports {', '.join(sorted(missing))}, which {other} does not export")
     done[name] = text
 
 
@@ -68,8 +67,7 @@ def assemble(folder, three, controls):
                 "@CONTROLS@": read_text(controls), "@MODULES@": join_modules(folder)}
     for mark in [*contents, "@DATA@"]:
         if page.count(mark) != 1:
-            raise InputError(f"{folder / 'index.html'}: has {mark} {page.count(mark)} times, "
-                            "expected once")
+            raise InputError(f"{folder / 'index.html'}: has {mark} {page.count(mark)} times, expected once")
     for mark, text in contents.items():
         if re.search("</(script|style)", text, re.IGNORECASE) or "@DATA@" in text:
             raise InputError(f"the text for {mark} contains the end of its element or @DATA@")

@@ -219,8 +219,7 @@ def main(words=None):
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("--out", type=pathlib.Path,
                         help="folder for masks (default: SEQUENCE/masks, or VIDEO_masks)")
-    parser.add_argument("--model", default="yolov8x-seg.pt",
-                        help="weights of YOLO (default yolov8x-seg.pt)")
+    parser.add_argument("--model", default="yolov8x-seg.pt", help="weights of YOLO (default yolov8x-seg.pt)")
     parser.add_argument("--refine", default="sam_b.pt", metavar="MODEL",
                         help="weights of SAM, or none (default sam_b.pt)")
     parser.add_argument("--confidence", type=number(0.0, 1.0), default=0.25, metavar="C",

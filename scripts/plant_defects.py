@@ -207,8 +207,7 @@ def main():
                         help="list of defects (default: scripts/defects.json)")
     parser.add_argument("--check", action="store_true",
                         help="build nothing, only check that all defects apply to the tree")
-    parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
-                        help="folder for the copy, which is kept")
+    parser.add_argument("--work", type=pathlib.Path, metavar="DIR", help="folder for the copy, which is kept")
     parser.add_argument("--sample", type=number(1, kind=int), metavar="N",
                         help="plant only N defects, drawn at random (default: all)")
     parser.add_argument("--seed", type=int, metavar="SEED",

@@ -157,8 +157,7 @@ def cut(path, model, image):
     for stride in STRIDES:
         parts = sorted((name for name in maps if graph.stride(name) == stride), key=graph.part)
         if not parts:
-            shapes = ", ".join(f"{value.name} {graph.shapes.get(value.name)}"
-                               for value in model.graph.output)
+            shapes = ", ".join(f"{value.name} {graph.shapes.get(value.name)}" for value in model.graph.output)
             raise InputError(f"{path}: no map of cells of {stride} px leads to the outputs ({shapes}), "
                              "expected YOLOv8-seg, YOLO11-seg or YOLOv5-seg, exported with dynamic=False")
         if len({graph.part(name) for name in parts}) < len(parts):

@@ -120,14 +120,12 @@ def print_plan(request, plan, cells, out):
               f"masks {sequence.masks or 'none'}")
     used = {}
     for (table, mode, _), found in cells.items():
-        used.setdefault((table, mode), set()).update(
-            name for cell in found for name in cell["runs"].values())
+        used.setdefault((table, mode), set()).update(name for cell in found for name in cell["runs"].values())
     for (table, mode), names in used.items():
         print(f"table {table}, {mode}: {len(names)} runs")
     done = {name for name, run in plan["runs"].items() if (out / result_file(name, run)).is_file()}
     frames = sum(run["frames"] for name, run in plan["runs"].items() if name not in done)
-    print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to "
-          "process")
+    print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to process")
     for name in plan["runs"]:
         print(f"  {'done' if name in done else 'to do'}  {name}")
 
@@ -167,8 +165,7 @@ def reproduce(arguments):
     paper = read_json(OWN / "paper_tables.json")
     if arguments.suite and not arguments.quiet and not suite_cache(arguments, tools).is_file():
         print("asking make_synthetic for its sequences", file=sys.stderr, flush=True)
-    suite = arguments.suite and suite_file(tools.path("make_synthetic"),
-                                           suite_cache(arguments, tools))
+    suite = arguments.suite and suite_file(tools.path("make_synthetic"), suite_cache(arguments, tools))
     request = make_request(arguments, tools, suite)
     plan, cells = make_plan(request, tools)
     if not plan["runs"]:

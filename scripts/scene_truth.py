@@ -176,8 +176,7 @@ def main():
     parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
                         help="the output folder of a run, and its synthetic sequence. The run must "
                         "have the world of the ground truth, as those of map-objects")
-    parser.add_argument("--questions", type=int, default=0, metavar="N",
-                        help="ask N questions per scene")
+    parser.add_argument("--questions", type=int, default=0, metavar="N", help="ask N questions per scene")
     parser.add_argument("--program", default=programs_folder() / "hullslam",
                         help="path of hullslam (default: that of this installation or of "
                              "build/release/bin)")

@@ -31,8 +31,7 @@ from support import exit_code, number, parser_of, programs_folder, read_json, ru
 
 # First and last frame of each session, for a recording of 800 frames. The second sessions follow the
 # first one, overlap with it, come before it, and are short and long.
-CUTS = ("0:300,301:500", "0:300,301:799", "0:200,201:799", "0:600,601:799", "400:799,0:399",
-        "200:600,0:199")
+CUTS = ("0:300,301:500", "0:300,301:799", "0:200,201:799", "0:600,601:799", "400:799,0:399", "200:600,0:199")
 SCENES = ("desk:0", "desk:1", "desk:2", "room:0", "room:1", "room:3", "house:0")
 KINDS = ("seen_again", "moved", "gone", "not_seen", "new", "first_seen")
 PLACES, FIGURES = ("places_left", "places_taken"), ("in_truth", "reported", "right")

@@ -12,8 +12,7 @@ def read_masks(path):
         lines = path.read_text(encoding="utf-8").splitlines()
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: is no text file; expected masks in the format yolo-seg") from error
-    return [read_mask(line.split(), f"{path}:{count}") for count, line in enumerate(lines, 1)
-            if line.strip()]
+    return [read_mask(line.split(), f"{path}:{count}") for count, line in enumerate(lines, 1) if line.strip()]
 
 
 def read_mask(words, where):

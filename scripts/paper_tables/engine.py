@@ -280,7 +280,8 @@ class Progress:
 
     def __init__(self, plan, jobs, is_quiet):
         self.is_quiet, self.count = is_quiet, len(plan["runs"])
-        weights = {result_file(name, run): run["frames"] for name, run in plan["runs"].items() if name in jobs}
+        runs = {name: run for name, run in plan["runs"].items() if name in jobs}
+        weights = {result_file(name, run): run["frames"] for name, run in runs.items()}
         weights |= {folder_output(name, folder): WEIGHTS[folder["kind"]] * folder["frames"]
                     for name, folder in plan["folders"].items() if name in jobs}
         self.missing = {output: max(weight, 1) for output, weight in weights.items()}
@@ -370,8 +371,7 @@ def run_snakemake(plan, jobs, profile, progress):
     for path in errors:
         path.unlink(missing_ok=True)
     log, command = pathlib.Path("snakemake.log"), snakemake_command(jobs, profile)
-    code, = work_off({"snakemake": (lambda: PROGRAMS.run(command, None, log), [])}, 1,
-                     progress.show).values()
+    code, = work_off({"snakemake": (lambda: PROGRAMS.run(command, None, log), [])}, 1, progress.show).values()
     for path, name in errors.items():
         if path.exists():
             kind, _, message = path.read_text(encoding="utf-8").strip().partition(" ")

@@ -100,13 +100,11 @@ def latex_lines(grid):
         else:
             lines.append(" & ".join(rf"\textbf{{{text}}}" if item.is_best else text
                                     for item, text in zip(row, texts)) + r" \\")
-    return [*lines, r"\end{longtable}", *(rf"\noindent {escape_latex(note)}\par" for note in grid.notes),
-            ""]
+    return [*lines, r"\end{longtable}", *(rf"\noindent {escape_latex(note)}\par" for note in grid.notes), ""]
 
 
 def latex(report):
-    lines = [LATEX_HEAD.rstrip("\n"), *(rf"\noindent {escape_latex(line)}\par"
-                                        for line in preface(report))]
+    lines = [LATEX_HEAD.rstrip("\n"), *(rf"\noindent {escape_latex(line)}\par" for line in preface(report))]
     for _, grid in all_grids(report):
         if grid.rows:
             lines += ["", *latex_lines(grid)]

@@ -62,8 +62,7 @@ def add_work_options(parser, timeout):
     parser.add_argument("--timeout", type=number(1e-3, 1e9), default=timeout, metavar="S",
                         help=f"longest time of a run (default {timeout:g} s)")
     parser.add_argument("--list", action="store_true", help="print what would be run, and end")
-    parser.add_argument("--so-far", action="store_true",
-                        help="run nothing; take the runs that are done")
+    parser.add_argument("--so-far", action="store_true", help="run nothing; take the runs that are done")
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 

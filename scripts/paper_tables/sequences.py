@@ -242,8 +242,7 @@ def in_order(sequences, paper_sequences):
     for sequence in sequences:
         other = known.setdefault(sequence.name, sequence)
         if other is not sequence:
-            raise InputError(f"{other.folder} and {sequence.folder} have the same name "
-                             f"'{sequence.name}'")
+            raise InputError(f"{other.folder} and {sequence.folder} have the same name '{sequence.name}'")
     order = list(paper_sequences)
     return sorted(sequences, key=lambda s: order.index(s.paper) if s.paper else len(order))
 

@@ -60,8 +60,7 @@ def difference(figure, base, other):
     """
     if FIGURES[figure].lower_is_better and figure != "lost":
         change, p, pairs = compare(base, other)
-        return None if change is None else {"change": change, "p": p, "pairs": pairs,
-                                            "is_relative": True}
+        return None if change is None else {"change": change, "p": p, "pairs": pairs, "is_relative": True}
     pairs = [other[key] - base[key] for key in sorted(base.keys() & other.keys())]
     return {"change": statistics.fmean(pairs), "p": flip_probability(pairs), "pairs": len(pairs),
             "is_relative": False} if pairs else None
@@ -86,8 +85,7 @@ def answer(figure, changes):
 
 def values_of(runs, column):
     """{key: figure} of the runs {key: run} that have not failed."""
-    found = {key: value_at(run["figures"], column) for key, run in runs.items()
-             if run and not run["failure"]}
+    found = {key: value_at(run["figures"], column) for key, run in runs.items() if run and not run["failure"]}
     return {key: value for key, value in found.items() if value is not None}
 
 
@@ -150,8 +148,7 @@ class Report:
     """Everything that tables, pages and comparisons show."""
 
     def __init__(self, request, plan, cells, results, paper):
-        self.definitions, self.plan, self.results, self.paper = (request.definitions, plan, results,
-                                                                 paper)
+        self.definitions, self.plan, self.results, self.paper = (request.definitions, plan, results, paper)
         self.seeds, self.frames, self.is_quick = request.seeds, request.frames, request.is_quick
         self.sequences = {sequence.name: sequence for sequence in request.sequences}
         self.plays = {name: sequence.paper for name, sequence in self.sequences.items()}

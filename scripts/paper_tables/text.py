@@ -149,8 +149,7 @@ def shared_runs(report, block):
     variants = report.definitions.variants
     for row in block.table.rows:
         other = variants[row.variant].same_as
-        names = [name for name in block.sequences
-                 if other and not report.sequences[name].has_rolling_shutter]
+        names = [name for name in block.sequences if other and not report.sequences[name].has_rolling_shutter]
         if names:
             yield (f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
                    f"shutter, on {', '.join(names)}.")
@@ -269,8 +268,7 @@ def preface(report):
     if report.frames:
         found.append(f"Only {report.frames} images of each sequence were used.")
     if report.is_quick:
-        found.append("This was a quick run, to see whether everything works: its figures mean "
-                     "little.")
+        found.append("This was a quick run, to see whether everything works: its figures mean little.")
     if report.builds():
         found.append(f"Commit of the programs: {', '.join(report.builds())}.")
     return found
