@@ -35,19 +35,11 @@ from paper_tables.files import markdown_lines  # noqa: E402
 from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
                                frame_line, new_lines, run_report)
 from paper_tables.plan import Planner, Request, Tools, add_case, add_work_options, chosen  # noqa: E402
-from paper_tables.sequences import Renderings, call_renderer, find_sequence, probe_hash  # noqa: E402
+from paper_tables.sequences import Renderings, find_sequence, probe_hash  # noqa: E402
 from paper_tables.tables import REPORT_VERSION, read_report  # noqa: E402
 
 TOP = SCRIPTS.parent
 ACCEPTED = TOP / "docs" / "results" / "accuracy.json"
-
-
-def make_renderings(renderings, cases):
-    missing = renderings.missing(cases)
-    for index, (folder, options) in enumerate(missing.items(), 1):
-        print(f"rendering {index} of {len(missing)}: {folder}", file=sys.stderr, flush=True)
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        call_renderer(renderings.program, options)
 
 
 def make_plan(definitions, cases, arguments, tools, renderings):
@@ -173,7 +165,7 @@ def gate(arguments):
     old = read_report(arguments.compare or ACCEPTED) if arguments.compare or ACCEPTED.is_file() else None
     renderings = Renderings(arguments.renderings, tools.path("make_synthetic"), definitions)
     commit = commit_to_accept(renderings) if arguments.accept else None
-    make_renderings(renderings, cases)
+    renderings.make(cases)
     plan, absent = make_plan(definitions, cases, arguments, tools, renderings)
     if arguments.list:
         list_runs(plan, out)

@@ -13,6 +13,7 @@ import sys
 
 from support import exit_code, InputError, parser_of, read_text
 
+BLOCK = re.compile(r"^[ \t]*```cpp[ \t]*\n(.*?)(^[ \t]*```[ \t]*$|\Z)", re.MULTILINE | re.DOTALL)
 HEAD = """// SPDX-License-Identifier: GPL-3.0-or-later
 // Written by scripts/docs_examples.py.
 #include "docs/given.h"
@@ -23,18 +24,11 @@ namespace {
 
 def blocks_of(text):
     """The line number of the first line of code and the code, of each C++ block."""
-    begin, code = None, []
-    for number, line in enumerate(text.splitlines(), start=1):
-        if begin is None:
-            if line.strip() == "```cpp":
-                begin, code = number + 1, []
-        elif line.strip() == "```":
-            yield begin, "\n".join(code)
-            begin = None
-        else:
-            code.append(line)
-    if begin is not None:
-        raise InputError(f"line {begin - 1}: the block has no end")
+    for match in BLOCK.finditer(text):
+        begin = text.count("\n", 0, match.start(1)) + 1
+        if not match[2]:
+            raise InputError(f"line {begin - 1}: the block has no end")
+        yield begin, match[1].rstrip("\n")
 
 
 def program(documents):

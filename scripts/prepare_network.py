@@ -17,7 +17,7 @@ import os
 import pathlib
 import sys
 
-from support import exit_code, InputError, one_line, parser_of, require, write
+from support import exit_code, InputError, one_line, parser_of, reachable, require, write
 
 STRIDES = (8, 16, 32)  # px of the input per cell of a map that YOLO decodes
 DEFAULT_SIZE = 640  # px, where the file leaves the size of the input open
@@ -82,17 +82,6 @@ def use_single_precision(model):
 
 
 # ---- the graph
-
-
-def reachable(names, following):
-    """The tensors with these names, those that following(tensor) gives for them, and so on."""
-    seen, todo = {}, list(names)
-    while todo:
-        name = todo.pop()
-        if name not in seen:
-            seen[name] = True
-            todo.extend(following(name))
-    return seen
 
 
 class Graph:
@@ -172,9 +161,9 @@ def cut(path, model, image):
             graph.shapes[name][1] = sum(graph.shapes[part][1] for part in parts)
         heads.append(helper.make_tensor_value_info(name, TensorProto.FLOAT, graph.shapes[name]))
     outputs = [*heads, *prototypes]
-    needed = reachable([value.name for value in outputs], graph.inputs)
+    needed = set(reachable([value.name for value in outputs], graph.inputs))
     model.graph.CopyFrom(helper.make_graph(
-        [node for node in model.graph.node if needed.keys() & set(node.output)], model.graph.name,
+        [node for node in model.graph.node if needed & set(node.output)], model.graph.name,
         model.graph.input, outputs, [tensor for tensor in model.graph.initializer if tensor.name in needed]))
 
 

@@ -121,6 +121,17 @@ def hullslam_module():
     return hullslam
 
 
+def reachable(first, following):
+    """The first things, those that following(thing) gives for them, and so on: each once."""
+    found = dict.fromkeys(first)
+    order = list(found)
+    for thing in order:  # grows while it is read
+        new = [other for other in dict.fromkeys(following(thing)) if other not in found]
+        found.update(dict.fromkeys(new))
+        order += new
+    return order
+
+
 # ---- files
 
 

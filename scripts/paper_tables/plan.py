@@ -18,7 +18,7 @@ import re
 
 from paper_tables.definitions import MODES
 from paper_tables.engine import DIGITS, RESULT_VERSION
-from support import SCRIPTS, InputError, call, hash_file, number, programs_folder, read_text
+from support import SCRIPTS, InputError, call, hash_file, number, programs_folder, reachable, read_text
 
 # The estimators of the modes and data sets.
 ESTIMATORS = {("rgbd", "tum"): "rgbd_tum", ("mono", "tum"): "mono_tum", ("rgbd", "icl"): "rgbd_icl",
@@ -93,9 +93,7 @@ class Tools:
 
     def hash_with_others(self, files, others):
         """The hashes of files and of the files others(text of a file), and so on."""
-        for path in files:  # grows while it is read
-            files += [other for other in dict.fromkeys(others(read_text(path))) if other not in files]
-        return [self.hash(path) for path in files]
+        return list(map(self.hash, reachable(files, lambda path: others(read_text(path)))))
 
     def preset_file(self, name):
         """The file of a preset: one of those of HullSLAM, or a path."""
@@ -113,7 +111,7 @@ class Tools:
         based on."""
         names = [name for option, name in zip(arguments, arguments[1:]) if option == "--preset"]
         bases = re.compile(r"^preset\.base:\s*(\S+)", re.MULTILINE)
-        return self.hash_with_others(list(map(self.preset_file, names)),
+        return self.hash_with_others(map(self.preset_file, names),
                                      lambda text: map(self.preset_file, bases.findall(text)))
 
     def script_hash(self, script):

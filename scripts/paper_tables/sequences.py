@@ -7,6 +7,7 @@ import hashlib
 import json
 import pathlib
 import re
+import sys
 import tempfile
 
 from support import InputError, call, hash_file, one_line, read_json, read_text, try_read_json
@@ -254,7 +255,7 @@ def call_renderer(program, options):
     """Renders a sequence or a suite. make_synthetic leaves a folder only when it is complete."""
     result = call(program, *options)
     if result.returncode != 0:
-        raise InputError(f"{program} {' '.join(options)}: "
+        raise InputError(f"{program} {' '.join(map(str, options))}: "
                          f"{one_line(result.stderr.strip() or 'has failed', 300)}")
 
 
@@ -336,16 +337,16 @@ class Renderings:
         name = hash_lines(json.dumps([self.renderer, case.source, self.options(case, seed)]))
         return self.folder / f"{case.sequence}-{seed}-{name[:RENDERING_DIGITS]}"
 
-    def missing(self, cases):
-        """{folder: options} of the renderings of the cases that are not there."""
-        found = {}
-        for case in cases:
-            for seed in case.seeds if case.source != "recorded" else ():
-                folder = self.path(case, seed)
-                if not folder.exists():
-                    target = ["--suite", str(folder)] if case.source == "suite" else [str(folder)]
-                    found[folder] = [*target, *self.options(case, seed)]
-        return found
+    def make(self, cases):
+        """Makes the renderings of the cases that are not there."""
+        wanted = {self.path(case, seed): (case, seed) for case in cases if case.source != "recorded"
+                  for seed in case.seeds}
+        missing = [folder for folder in wanted if not folder.exists()]
+        for index, folder in enumerate(missing, 1):
+            print(f"rendering {index} of {len(missing)}: {folder}", file=sys.stderr, flush=True)
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            target = ["--suite", folder] if wanted[folder][0].source == "suite" else [folder]
+            call_renderer(self.program, [*target, *self.options(*wanted[folder])])
 
 
 def find_sequence(case, seed, data, renderings, config):
