@@ -29,18 +29,18 @@ SAVED_MAP = "saved.map"
 
 def list_runs(desk, sequence, masks):
     """The command of each run by its name, without --output. A later run may need an earlier one."""
-    def of_sequence(folder, masks, kinds):
-        known_poses = ["hullslam", "map-objects", folder, "--poses", folder / "groundtruth.txt"]
-        plain = {name: [program, folder] for name, program in kinds.items()}
-        with_masks = {f"{name}_masks": [*command, "--masks", masks] for name, command in plain.items()}
-        return plain, {**with_masks, "objects": [*known_poses, "--masks", masks]}
-    plain, others = of_sequence(desk, desk / "masks", {"desk": "rgbd_tum"})
-    runs = {**plain, "desk_masks": others["desk_masks"], "desk_objects": others["objects"],
-            "desk_saved": [*others["desk_masks"], "--last", 149, "--save-map", SAVED_MAP],
-            "desk_loaded": [*others["desk_masks"], "--first", 150, "--load-map", SAVED_MAP]}
+    def known_poses(folder, masks):
+        return ["hullslam", "map-objects", folder, "--poses", folder / "groundtruth.txt", "--masks", masks]
+    with_masks = ["rgbd_tum", desk, "--masks", desk / "masks"]
+    runs = {"desk": ["rgbd_tum", desk], "desk_masks": with_masks,
+            "desk_objects": known_poses(desk, desk / "masks"),
+            "desk_saved": [*with_masks, "--last", 149, "--save-map", SAVED_MAP],
+            "desk_loaded": [*with_masks, "--first", 150, "--load-map", SAVED_MAP]}
     if sequence is not None:
-        plain, others = of_sequence(sequence, masks, {"rgbd": "rgbd_tum", "mono": "mono_tum"})
-        runs |= plain | (others if masks is not None else {})
+        runs |= {"rgbd": ["rgbd_tum", sequence], "mono": ["mono_tum", sequence]}
+    if masks is not None:
+        runs |= {f"{mode}_masks": [*runs[mode], "--masks", masks] for mode in ("rgbd", "mono")}
+        runs["objects"] = known_poses(sequence, masks)
     return runs
 
 

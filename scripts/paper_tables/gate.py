@@ -22,7 +22,7 @@ import statistics
 import numpy as np
 
 from paper_tables.definitions import ALL_MODES
-from paper_tables.text import DASH, Grid, Text
+from paper_tables.text import DASH, Best, Grid
 from run_alignment import LEAST_POSES, align, align_most, move, pair
 from run_statistics import sign_probability
 from support import InputError, read_trajectory, value_at
@@ -252,14 +252,13 @@ def case_cell(comparison, group, key, names):
     old, new = (statistics.median(of_runs) if of_runs else None for of_runs in values)
     entry = comparison.cases[group].get(key)
     if entry is None or old is None or new is None:
-        return Text(DASH if old is None and new is None else
-                    f"{number(measure, old)} -> {number(measure, new)}")
+        return DASH if old is None and new is None else f"{number(measure, old)} -> {number(measure, new)}"
     text = number(measure, old)
     if number(measure, new) != text:
         text += f" -> {number(measure, new)}"
     if entry[2] != "same":
         text += f" ({change_text(measure, entry[0])}, {entry[2]})"
-    return Text(text, is_best=entry[2] == "worse")
+    return Best(text) if entry[2] == "worse" else text
 
 
 def case_grid(comparison, only_changed=False):
@@ -269,7 +268,7 @@ def case_grid(comparison, only_changed=False):
         told = [entry[2] for entry in comparison.cases[group].values()]
         if only_changed and not any(word != "same" for word in told):
             continue
-        rows.append([*(Text(word) for word in group), Text(str(len(names))),
+        rows.append([*group, str(len(names)),
                      *(case_cell(comparison, group, key, names) for key in MEASURES)])
     return Grid("Cases", ["case", "mode", "variant", "runs",
                           *(measure.title for measure in MEASURES.values())], rows,

@@ -10,11 +10,8 @@ from paper_tables.tables import COMPARED, MODE_TITLES
 DASH = "–"
 
 
-@dataclasses.dataclass
-class Text:
-    """A text of a grid."""
-    text: str
-    is_best: bool = False
+class Best(str):
+    """A text of a grid that is shown in bold."""
 
 
 @dataclasses.dataclass
@@ -43,11 +40,11 @@ def entry_text(cell, column, figure):
     """The median, the smallest and the largest value of the runs of a cell."""
     entry = cell["figures"].get(column.key)
     if entry is None:
-        return Text(DASH)
+        return DASH
     text = number(entry["median"], figure)
     if len(entry["values"]) > 1:
         text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
-    return Text(text)
+    return text
 
 
 # ---- overviews: a row for each system, a column for each sequence
@@ -76,7 +73,7 @@ def overview_cell(block, cell, best):
         text += f", {lost['median']:.1f} %" if lost and lost["median"] >= 0.05 else ""
     if cell["papers"][key] is not None:
         text += f" [{number(cell['papers'][key], FIGURES[key])}]"
-    return Text(text, cell["row"] in best)
+    return Best(text) if cell["row"] in best else text
 
 
 def sequence_heading(report, name):
@@ -94,9 +91,9 @@ def overview(report, block):
     best = {name: best_rows(block, name, columns[0], FIGURES[key]) for name in block.sequences}
     rows = []
     for index, (variant, label) in enumerate(labels.items()):
-        texts = [overview_cell(block, block.sequences[name][index], best[name]) if name else Text(DASH)
+        texts = [overview_cell(block, block.sequences[name][index], best[name]) if name else DASH
                  for name, _ in names]
-        rows.append([Text(label), *texts, Text(difference_text(block.overall[variant]["difference"], key))])
+        rows.append([label, *texts, difference_text(block.overall[variant]["difference"], key)])
     notes = [f"{' / '.join(column.heading for column in columns)}: medians of the runs that did not fail."]
     if any(cell["papers"][key] is not None for _, cell in block.cells):
         notes.append("In square brackets: the paper's figure, on the sequence of the paper.")
@@ -118,19 +115,19 @@ def detail(report, block):
     rows = []
     for name, paper in report.columns(block):
         if name is None:
-            rows.append([Text(paper), *(Text(DASH) for _ in head[1:])])
+            rows.append([paper, *[DASH] * (len(head) - 1)])
             continue
-        rows.append([Text(sequence_heading(report, name))])
+        rows.append([sequence_heading(report, name)])
         best = {column.key: best_rows(block, name, column, figure) for _, figure, column in block.columns}
         for cell in block.sequences[name]:
             texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
-            for text, (_, _, column) in zip(texts, block.columns):
-                text.is_best = cell["row"] in best[column.key]
+            texts = [Best(text) if cell["row"] in best[column.key] else text
+                     for text, (_, _, column) in zip(texts, block.columns)]
             runs = f"{cell['done']}"
             for key, told in ("failures", "failed"), ("missing", "not run"):
                 runs += f", {len(cell[key])} {told}" if cell[key] else ""
-            rows.append([Text(cell["label"]), *texts,
-                         *(Text(number(cell["papers"][key], FIGURES[key])) for key in of_paper), Text(runs)])
+            rows.append([cell["label"], *texts,
+                         *(number(cell["papers"][key], FIGURES[key]) for key in of_paper), runs])
     return Grid(f"{block.title}, all figures", head, rows,
                 [*shared_runs(report, block), *reasons(block), *failures(block)])
 
@@ -168,15 +165,15 @@ def degradation_grid(report, block):
                            for _, _, column in block.columns)]
     rows = []
     for name, cells in block.sequences.items():
-        rows.append([Text(sequence_heading(report, name))])
+        rows.append([sequence_heading(report, name)])
         for start in range(0, len(cells), len(table.rows)):
             group = cells[start:start + len(table.rows)]
             of_row = known[group[0]["degradation"] or table.degradations[0]]
             level = group[0]["level"] or of_row.unchanged  # None: of runs without a degradation
-            row = [Text(of_row.label if level else "none"), Text(level or "")]
+            row = [of_row.label if level else "none", level or ""]
             for cell in group:
                 texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
-                texts[0].text += f" !{len(cell['failures'])}" if cell["failures"] else ""
+                texts[0] += f" !{len(cell['failures'])}" if cell["failures"] else ""
                 row += texts
             rows.append(row)
     return Grid(block.title, head, rows, ["!n: n runs failed.", *reasons(block), *failures(block)])
@@ -199,8 +196,8 @@ def claims_grid(report):
     for claim in report.claims:
         told = "; ".join(f"against {label(name)} {difference_text(change, claim['figure'])}"
                          for name, change in claim["than"].items())
-        rows.append([Text(claim["text"]), Text(MODE_TITLES[claim["mode"]]),
-                     Text(claim["answer"]), Text(f"{label(claim['better'])}: {told}")])
+        rows.append([claim["text"], MODE_TITLES[claim["mode"]],
+                     claim["answer"], f"{label(claim['better'])}: {told}"])
     return Grid("Claims of the paper", ["claim", "mode", "answer", "from the pairs of runs"], rows,
                 ["yes: better than each of the others, each with p of at most 0.05; no: worse than "
                  "one of them with such a p; unclear: neither."])
@@ -223,7 +220,7 @@ def ranking_grid(block):
                 ranks.setdefault(label, ([], []))[index].append(rank)
     means = [(row.label, *map(statistics.fmean, ranks[row.label])) for row in block.table.rows
              if row.label in ranks]
-    rows = [[Text(label), Text(f"{ours:.1f}"), Text(f"{theirs:.1f}")]
+    rows = [[label, f"{ours:.1f}", f"{theirs:.1f}"]
             for label, ours, theirs in sorted(means, key=lambda row: row[1])]
     return Grid(f"{block.title}: order", ["", "mean rank", "mean rank in the paper"], rows,
                 ["Ranks within each sequence, by the medians; over the sequences for which both "
@@ -236,10 +233,10 @@ def comparison_grid(found, labels):
     for row in found["rows"]:
         changes = [row["figures"].get(key) for key in COMPARED]
         name, _, level = row["variant"].partition("+")
-        rows.append([Text(labels.get(name, name) + (f" + {level}" if level else "")), Text(row["mode"]),
-                     *(Text(f"{difference_text(change, key)}, {change['verdict']}" if change else DASH)
+        rows.append([labels.get(name, name) + (f" + {level}" if level else ""), row["mode"],
+                     *(f"{difference_text(change, key)}, {change['verdict']}" if change else DASH
                        for key, change in zip(COMPARED, changes)),
-                     Text(f"{row['failed_before']} -> {row['failed_after']} of {row['common']}")])
+                     f"{row['failed_before']} -> {row['failed_after']} of {row['common']}"])
     old, new = (", ".join(map(str, found[key] or ["unknown"])) for key in ("old_git", "new_git"))
     return Grid(f"Differences since {old} (now {new})",
                 ["", "mode", *(FIGURES[key].title for key in COMPARED), "failed runs"], rows,
