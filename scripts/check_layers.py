@@ -66,6 +66,7 @@ KEPT_PRIVATE = re.compile(
     re.IGNORECASE)
 COMMENT, COMMENT_IN_CODE = re.compile(r"#.*"), re.compile(r"//.*")
 MODULE_CALL = re.compile(r"\bhullslam_module\(([^)]*)\)")
+KEYWORD = re.compile(r"(?<!\S)(LINKS|PUBLIC|PRIVATE|WITH_\S*)(?!\S)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -93,26 +94,16 @@ def target_of(included, quoted, path, root):
     return None, False
 
 
-def links_of(arguments):
-    """The words after LINKS in the arguments of hullslam_module(), up to the next keyword."""
-    links, key = set(), ""
-    for word in arguments.split():
-        if word in ("LINKS", "PUBLIC", "PRIVATE") or word.startswith("WITH_"):
-            key = word
-        elif key == "LINKS":
-            links.add(word)
-    return links
-
-
 def declared_links(root):
     """For each module that calls hullslam_module(): the modules that it names in LINKS."""
     links = {}
     for module in LEVELS:
         file = root / "src" / module / "CMakeLists.txt"
         text = COMMENT.sub("", file.read_text(encoding="utf-8")) if file.exists() else ""
-        call = MODULE_CALL.search(text)
-        if call:
-            links[module] = links_of(call[1])
+        if call := MODULE_CALL.search(text):
+            _, *parts = KEYWORD.split(call[1])
+            links[module] = {word for key, words in zip(parts[::2], parts[1::2]) if key == "LINKS"
+                             for word in words.split()}
     return links
 
 

@@ -223,12 +223,6 @@ class Run:
             words += ["--set", override]
         return words + ["--quiet"] * (self.values["verbose"] == "0")
 
-    def write_results(self):
-        stamps = sorted(stamp for stamp, _ in self.images)
-        text = format_keyframes(self.output / "keyframes.txt", stamps, self.cameras[0].is_mirrored)
-        for result in self.results:
-            write(result, text)
-
 
 def run(mode, words):
     require("numpy", "yaml")
@@ -239,7 +233,9 @@ def run(mode, words):
     job.write_input()
     code = subprocess.run(job.command(), check=False).returncode
     if code == 0:
-        job.write_results()
+        stamps, is_mirrored = sorted(stamp for stamp, _ in job.images), job.cameras[0].is_mirrored
+        for result in job.results:
+            write(result, format_keyframes(job.output / "keyframes.txt", stamps, is_mirrored))
     elif not job.output.exists():  # it was refused, so that nothing is left of it
         print(f"error: the sequence {job.input} was made from {job.values['rgb_csv']} and {job.calibration}",
               file=sys.stderr)
