@@ -29,8 +29,7 @@ from support import (call, exit_code, InputError, parser_of, programs_folder, re
 
 require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import read_definitions  # noqa: E402
-from paper_tables.engine import (PLAN, make_all, read_results, result_file,  # noqa: E402
-                                 stop_by_signals, table_lock)
+from paper_tables.engine import at_work, make_all, read_results, result_file, stop_by_signals  # noqa: E402
 from paper_tables.files import markdown_lines  # noqa: E402
 from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
                                frame_line, new_lines, run_report)
@@ -170,9 +169,7 @@ def gate(arguments):
     if arguments.list:
         list_runs(plan, out)
         return 0
-    out.mkdir(parents=True, exist_ok=True)
-    with table_lock(out):
-        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+    with at_work(plan, out):
         if not arguments.so_far:
             make_all(plan, out, arguments.jobs, is_quiet=arguments.quiet)
         report = make_report(plan, out, renderings)

@@ -30,8 +30,8 @@ from support import exit_code, InputError, number, parser_of, read_json, require
 
 require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
-from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
-                                 result_file, stop_by_signals, table_lock)
+from paper_tables.engine import (DIGITS, at_work, describe_dry_run, make_all, read_results,  # noqa: E402
+                                 result_file, stop_by_signals)
 from paper_tables.files import latex, markdown, markdown_lines  # noqa: E402
 from paper_tables.plan import Request, Tools, add_work_options, chosen, make_plan  # noqa: E402
 from paper_tables.sequences import (find_sequences, in_order, read_list, read_sequence,  # noqa: E402
@@ -173,11 +173,9 @@ def reproduce(arguments):
     if arguments.list:
         print_plan(request, plan, cells, out)
         return
-    out.mkdir(parents=True, exist_ok=True)
-    if suite:
-        write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
-    with table_lock(out):
-        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+    with at_work(plan, out):
+        if suite:
+            write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
         if arguments.retry_failed:
             forget_failures(plan, out)
         if arguments.dry_run:

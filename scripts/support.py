@@ -3,6 +3,7 @@
 programs are."""
 
 import argparse
+import functools
 import hashlib
 import importlib.util
 import json
@@ -108,6 +109,7 @@ def run_program(command, log, **options):
             raise InputError(f"cannot run {command[0]}: {error.strerror}") from error
 
 
+@functools.cache
 def hullslam_module():
     """HullSLAM's Python module: one that this Python has, else that of the build or installation."""
     built = programs_folder().parent

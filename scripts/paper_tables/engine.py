@@ -61,9 +61,13 @@ def locked(path, refusal=None):
         yield
 
 
-def table_lock(out):
-    return locked(out / ".lock", f"{out}: another table run is at work in this folder (process {{}}); "
-                  "wait for its end or give another --out")
+@contextlib.contextmanager
+def at_work(plan, out):
+    """Holds the lock of a folder for runs, into which the plan is written."""
+    with locked(out / ".lock", f"{out}: another table run is at work in this folder (process {{}}); "
+                               "wait for its end or give another --out"):
+        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+        yield
 
 
 # ---- programs
@@ -138,7 +142,9 @@ def failure_of(code, message, seconds):
     """Why a run counts as failed; None if it has succeeded."""
     if code is None:
         return f"not finished after {seconds:g} s"
-    return f"crashed with {signal.Signals(-code).name}" if code < 0 else message if code > 0 else None
+    if code < 0:
+        return f"crashed with {signal.Signals(-code).name}"
+    return None if code == 0 else message
 
 
 def work_off(jobs, count, look=lambda: None):
@@ -308,8 +314,9 @@ class Progress:
 
 def duration(seconds):
     minutes = round(seconds / 60.0)
-    return f"{minutes // 60} h {minutes % 60} min" if minutes >= 90 else \
-        f"{minutes} min" if minutes >= 1 else f"{max(1, round(seconds))} s"
+    if minutes < 1:
+        return f"{max(1, round(seconds))} s"
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
 # ---- a whole plan
@@ -343,7 +350,7 @@ def snakemake_command(jobs, profile, is_dry_run=False):
     program = shutil.which("snakemake")
     if program is None:
         raise InputError("snakemake is not installed; run scripts/setup.sh")
-    # The lock of table_lock() is enough, and that of Snakemake would outlive a kill.
+    # The lock of at_work() is enough, and that of Snakemake would outlive a kill.
     command = [program, "--snakefile", str(SNAKEFILE), "--config", f"plan={PLAN}",
                f"python={sys.executable}", "--nolock", "--rerun-incomplete", "--rerun-triggers",
                "mtime", "--scheduler", "greedy", "--nocolor"]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures of a run: how each is taken from its results, and how tables show it."""
 
+import collections
 import dataclasses
 import json
 import shlex
@@ -8,10 +9,7 @@ import shlex
 from support import Stopped, call, one_line, value_at
 
 
-@dataclasses.dataclass(frozen=True)
-class Column:
-    heading: str
-    key: str  # in the figures of a run
+Column = collections.namedtuple("Column", ("heading", "key"))  # the key is that in the figures of a run
 
 
 @dataclasses.dataclass(frozen=True)
