@@ -53,7 +53,7 @@ WORDS = (
 )
 
 # These numbers may only become smaller. The goals of ALL_FILES and SCRIPTS are 900 and 6500.
-MOST_FILES, MOST_LINES, ALL_FILES, SCRIPTS = 40, 900, 1084, 7535
+MOST_FILES, MOST_LINES, ALL_FILES, SCRIPTS = 40, 900, 1084, 7524
 CORE = {module for module, level in LEVELS.items() if level <= LEVELS["system"]} - {"files", "images", "bags"}
 PARTS = {  # name: (modules, lines of src; the goals are 35000 and 4500)
     "core": (CORE, 37300),
