@@ -38,7 +38,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libhullslam${soname} ${same}, libhullslam-
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME hullslam)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
-    "libhullslam${soname} ${same}, python3, python3-numpy, python3-matplotlib, python3-opencv, python3-yaml")
+    "libhullslam${soname} ${same}, python3, python3-numpy, python3-matplotlib, python3-opencv, python3-yaml, python3-jsonschema")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "snakemake, python3-onnx, python3-hullslam")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hullslam)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

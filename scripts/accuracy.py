@@ -22,33 +22,23 @@ Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped,
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from support import exit_code, InputError, parser_of, programs_folder, require, try_read_json, write
+from support import (call, exit_code, InputError, parser_of, programs_folder, require, SCRIPTS, try_read_json,
+                     write)
 
-require("numpy", "yaml")
+require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import read_definitions  # noqa: E402
-from paper_tables.engine import (PLAN, make_all, read_results, result_file,  # noqa: E402
-                                 stop_by_signals, table_lock)
+from paper_tables.engine import at_work, make_all, read_results, result_file, stop_by_signals  # noqa: E402
 from paper_tables.files import markdown_lines  # noqa: E402
 from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
                                frame_line, new_lines, run_report)
-from paper_tables.plan import Planner, Request, Tools, add_case, chosen  # noqa: E402
-from paper_tables.sequences import Renderings, call_renderer, find_sequence, probe_hash  # noqa: E402
+from paper_tables.plan import Planner, Request, Tools, add_case, add_work_options, chosen  # noqa: E402
+from paper_tables.sequences import Renderings, find_sequence, probe_hash  # noqa: E402
 from paper_tables.tables import REPORT_VERSION, read_report  # noqa: E402
 
-SCRIPTS = pathlib.Path(__file__).resolve().parent
 TOP = SCRIPTS.parent
 ACCEPTED = TOP / "docs" / "results" / "accuracy.json"
-
-
-def make_renderings(renderings, cases):
-    missing = renderings.missing(cases)
-    for index, (folder, options) in enumerate(missing.items(), 1):
-        print(f"rendering {index} of {len(missing)}: {folder}", file=sys.stderr, flush=True)
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        call_renderer(renderings.program, options)
 
 
 def make_plan(definitions, cases, arguments, tools, renderings):
@@ -113,8 +103,7 @@ def build_name(report):
 def compare(old, new, out, is_accepted):
     """Prints and writes the comparison. Returns whether something got worse. Figures that are accepted
     may all be new."""
-    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
-                            new["runs"])
+    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run}, new["runs"])
     if not comparison.common and not is_accepted:
         raise InputError("no run is in both reports with the same input, so there is nothing to compare")
     lines = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])
@@ -138,8 +127,7 @@ def commit_to_accept(renderings):
     that they can be made again."""
     if not renderings.program.resolve().is_relative_to(TOP):
         raise InputError(f"--accept: {renderings.program} is not a program of {TOP}")
-    result = subprocess.run(["git", "-C", str(TOP), "describe", "--always", "--dirty"],
-                            capture_output=True, text=True, check=False)
+    result = call("git", "-C", TOP, "describe", "--always", "--dirty")
     if result.returncode != 0:
         raise InputError(f"--accept: {TOP} is no checkout of git")
     if result.stdout.strip().endswith("-dirty"):
@@ -147,15 +135,11 @@ def commit_to_accept(renderings):
     return result.stdout.strip()
 
 
-def check_builds(report, commit):
-    others = [build for build in report["git"] or ["unknown"] if build != commit]
-    if others:
+def accept(report, absent, out, is_part, commit):
+    """With --only, the other cases keep their figures."""
+    if others := [build for build in report["git"] or ["unknown"] if build != commit]:
         raise InputError(f"--accept: the runs are of {', '.join(others)}, and {TOP} is at {commit}; "
                          "configure and build it, and run again")
-
-
-def accept(report, absent, out, is_part):
-    """With --only, the other cases keep their figures."""
     if absent:
         raise InputError(f"--accept: {', '.join(absent)} is absent, and the accepted figures must have "
                          "all cases")
@@ -180,14 +164,12 @@ def gate(arguments):
     old = read_report(arguments.compare or ACCEPTED) if arguments.compare or ACCEPTED.is_file() else None
     renderings = Renderings(arguments.renderings, tools.path("make_synthetic"), definitions)
     commit = commit_to_accept(renderings) if arguments.accept else None
-    make_renderings(renderings, cases)
+    renderings.make(cases)
     plan, absent = make_plan(definitions, cases, arguments, tools, renderings)
     if arguments.list:
         list_runs(plan, out)
         return 0
-    out.mkdir(parents=True, exist_ok=True)
-    with table_lock(out):
-        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+    with at_work(plan, out):
         if not arguments.so_far:
             make_all(plan, out, arguments.jobs, is_quiet=arguments.quiet)
         report = make_report(plan, out, renderings)
@@ -196,8 +178,7 @@ def gate(arguments):
     if old is None:
         print(f"note: {ACCEPTED} does not exist, so nothing is compared", file=sys.stderr)
     if arguments.accept:
-        check_builds(report, commit)
-        accept(report, absent, out, arguments.only is not None)
+        accept(report, absent, out, arguments.only is not None, commit)
     return int(is_worse and not arguments.accept)
 
 
@@ -205,9 +186,6 @@ def parse_arguments(words):
     parser = parser_of(__doc__)
     parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "accuracy",
                         metavar="FOLDER", help="folder for runs and figures (default: build/accuracy)")
-    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
-                        help="the programs of the build that is measured (default: those of this "
-                             "installation or of build/release/bin)")
     parser.add_argument("--tools", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
                         help="hullslam and make_synthetic, which should be the same for all builds "
                              "(default: those of this installation or of build/release/bin)")
@@ -218,9 +196,6 @@ def parse_arguments(words):
                              "these cases; exit code 0")
     parser.add_argument("--only", metavar="CASE,...", help="only some of the cases")
     parser.add_argument("--quick", action="store_true", help="one run of each case instead of several")
-    parser.add_argument("--so-far", action="store_true",
-                        help="run nothing; compare the runs that are done")
-    parser.add_argument("--list", action="store_true", help="print what would be run, and end")
     parser.add_argument("--data", type=pathlib.Path, default=TOP.parent / "shared" / "data",
                         metavar="FOLDER", help="recorded sequences (default: ../shared/data beside "
                                                "this checkout)")
@@ -230,15 +205,8 @@ def parse_arguments(words):
     parser.add_argument("--definitions", type=pathlib.Path, metavar="FILE",
                         default=SCRIPTS / "paper_tables" / "accuracy.yaml",
                         help="the cases (default: paper_tables/accuracy.yaml beside this script)")
-    parser.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
-    parser.add_argument("--timeout", type=float, default=600.0, metavar="S",
-                        help="longest time of a run (default 600 s)")
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
+    add_work_options(parser, timeout=600.0)
     arguments = parser.parse_args(words)
-    if arguments.jobs is not None and arguments.jobs < 1:
-        parser.error(f"--jobs is {arguments.jobs}, expected 1 or more")
-    if not 0.0 < arguments.timeout < 1e9:
-        parser.error("--timeout must be a number of seconds")
     if arguments.accept and (arguments.quick or arguments.list or arguments.so_far):
         parser.error("--accept needs all runs of its cases, so it excludes --quick, --so-far and --list")
     return arguments

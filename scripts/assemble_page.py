@@ -10,10 +10,11 @@ must be unique among all modules.
 With --cpp the page is written as a C++ file that defines hullslam::PageTemplate().
 """
 
-import argparse
 import pathlib
 import re
 import sys
+
+from support import exit_code, InputError, parser_of, read_text
 
 IMPORT = re.compile(r"^import\s*\{([^}]*)\}\s*from\s*'\./([\w.-]+)';[ \t]*\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async )?(?:function|const|let|class)\b)", re.MULTILINE)
@@ -22,36 +23,19 @@ LEFT_OVER = re.compile(r"^(?:import|export)\b.*", re.MULTILINE)
 CHUNK = 8000  # characters of a string in the C++ file
 
 
-class PageError(Exception):
-    """The sources of the page cannot be joined."""
-
-
-def read(path):
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise PageError(f"cannot read {path}: {error}") from error
-
-
-def exported_names(text):
-    return {match[1] for match in TOP_NAME.finditer(text) if match[0].startswith("export")}
-
-
 def in_order(folder, name, done, open_modules):
     """Adds the module and those that it imports to `done`: {name: text}, each after its imports."""
     if name in done:
         return
     path = folder / name
     if name in open_modules:
-        raise PageError(f"{path}: imports itself through {' '.join(open_modules)}")
-    text = read(path)
+        raise InputError(f"{path}: imports itself through {' '.join(open_modules)}")
+    text = read_text(path)
     for names, other in IMPORT.findall(text):
         in_order(folder, other, done, [*open_modules, name])
-        missing = {word.strip() for word in names.split(",") if word.strip()} \
-            - exported_names(done[other])
-        if missing:
-            raise PageError(f"{path}: imports {', '.join(sorted(missing))}, which {other} does not "
-                            "export")
+        exported = {match[1] for match in TOP_NAME.finditer(done[other]) if match[0].startswith("export")}
+        if missing := {word.strip() for word in names.split(",") if word.strip()} - exported:
+            raise InputError(f"{path}: imports {', '.join(sorted(missing))}, which {other} does not export")
     done[name] = text
 
 
@@ -64,13 +48,13 @@ def join_modules(folder, main="main.js"):
     for name, text in modules.items():
         for match in TOP_NAME.finditer(text):
             if match[1] in owners:
-                raise PageError(f"{folder / name}: {match[1]} is also in {owners[match[1]]}; names "
+                raise InputError(f"{folder / name}: {match[1]} is also in {owners[match[1]]}; names "
                                 "at the top of modules must be unique")
             owners[match[1]] = name
         text = EXPORT.sub("", IMPORT.sub("", text))
         other = LEFT_OVER.search(text)
         if other:
-            raise PageError(f"{folder / name}: \"{other[0]}\", expected import {{ a }} from "
+            raise InputError(f"{folder / name}: \"{other[0]}\", expected import {{ a }} from "
                             "'./file.js'; or export before function, const or class")
         parts.append(text.strip())
     return "\n\n".join(parts)
@@ -78,16 +62,15 @@ def join_modules(folder, main="main.js"):
 
 def assemble(folder, three, controls):
     """The page. Its data, @DATA@, is left to the program that writes a report."""
-    page = read(folder / "index.html")
-    contents = {"@STYLE@": read(folder / "style.css"), "@THREE@": read(three),
-                "@CONTROLS@": read(controls), "@MODULES@": join_modules(folder)}
+    page = read_text(folder / "index.html")
+    contents = {"@STYLE@": read_text(folder / "style.css"), "@THREE@": read_text(three),
+                "@CONTROLS@": read_text(controls), "@MODULES@": join_modules(folder)}
     for mark in [*contents, "@DATA@"]:
         if page.count(mark) != 1:
-            raise PageError(f"{folder / 'index.html'}: has {mark} {page.count(mark)} times, "
-                            "expected once")
+            raise InputError(f"{folder / 'index.html'}: has {mark} {page.count(mark)} times, expected once")
     for mark, text in contents.items():
         if re.search("</(script|style)", text, re.IGNORECASE) or "@DATA@" in text:
-            raise PageError(f"the text for {mark} contains the end of its element or @DATA@")
+            raise InputError(f"the text for {mark} contains the end of its element or @DATA@")
         page = page.replace(mark, text.strip())
     return page
 
@@ -102,24 +85,17 @@ def as_cpp(page):
             "}  // namespace hullslam\n")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+def run(arguments):
+    page = assemble(arguments.web, arguments.three, arguments.controls)
+    arguments.output.parent.mkdir(parents=True, exist_ok=True)
+    arguments.output.write_text(as_cpp(page) if arguments.cpp else page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    parser = parser_of(__doc__)
     parser.add_argument("web", type=pathlib.Path, help="folder with index.html and the modules")
     parser.add_argument("--three", type=pathlib.Path, required=True, help="three.min.js")
     parser.add_argument("--controls", type=pathlib.Path, required=True, help="OrbitControls.js")
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--cpp", action="store_true", help="write a C++ file instead of HTML")
-    arguments = parser.parse_args()
-    try:
-        page = assemble(arguments.web, arguments.three, arguments.controls)
-    except PageError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    arguments.output.parent.mkdir(parents=True, exist_ok=True)
-    arguments.output.write_text(as_cpp(page) if arguments.cpp else page, encoding="utf-8")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(run, parser.parse_args(), failure=2))

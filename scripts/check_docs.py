@@ -18,6 +18,7 @@
 7. The pages in docs/ are at most 26, with at most 36600 words together.
 """
 
+import itertools
 import pathlib
 import re
 import sys
@@ -52,46 +53,31 @@ PATH_END = ".,:;"
 
 
 class Document:
-    """A Markdown file: its lines, and which of them are code."""
+    """A Markdown file: its lines, and which of them are text and code: lists of (number, line)."""
 
     def __init__(self, path, root):
-        self.path = path
-        self.name = str(path.relative_to(root))
+        self.path, self.name = path, str(path.relative_to(root))
         self.lines = path.read_text(encoding="utf-8").splitlines()
-        self.is_fence, self.is_code = [], []
-        inside = False
-        for line in self.lines:
-            is_fence = FENCE.match(line) is not None
-            self.is_fence.append(is_fence)
-            self.is_code.append(inside and not is_fence)
-            inside ^= is_fence
-
-    def text_lines(self):
-        """(number, line) of the lines that are no code."""
-        return [(number, line) for number, (line, fence, code)
-                in enumerate(zip(self.lines, self.is_fence, self.is_code), 1)
-                if not fence and not code]
-
-    def code_lines(self):
-        return [(number, line) for number, (line, code)
-                in enumerate(zip(self.lines, self.is_code), 1) if code]
-
-    def inline_code(self):
-        """(number of the line, text) of each piece of code within a line."""
-        return [(number, match[2]) for number, line in self.text_lines()
-                for match in INLINE_CODE.finditer(line)]
+        self.text, self.code = [], []
+        is_code = False
+        for number, line in enumerate(self.lines, 1):
+            if FENCE.match(line):
+                is_code = not is_code
+            else:
+                (self.code if is_code else self.text).append((number, line))
+        self.inline_code = [(number, match[2]) for number, line in self.text
+                            for match in INLINE_CODE.finditer(line)]
+        self.all_code = self.inline_code + self.code
 
     def anchors(self):
         """The names by which links reach the headings, as GitHub makes them."""
-        found, counts = set(), {}
-        for _, line in self.text_lines():
+        found, slugs = set(), []
+        for _, line in self.text:
             found.update(ANCHOR.findall(line))
-            heading = HEADING.match(line)
-            if heading:
-                slug = slug_of(heading[1])
-                count = counts.get(slug, 0)
-                counts[slug] = count + 1
-                found.add(f"{slug}-{count}" if count else slug)
+            if heading := HEADING.match(line):
+                slugs.append(slug_of(heading[1]))
+                count = slugs.count(slugs[-1]) - 1
+                found.add(f"{slugs[-1]}-{count}" if count else slugs[-1])
         return found
 
 
@@ -106,14 +92,8 @@ def is_row(line):
 
 def tables(document):
     """For each table of the document: the first cell of each of its rows, the header first."""
-    found, is_inside = [], False
-    for _, line in document.text_lines():
-        if is_row(line):
-            if not is_inside:
-                found.append([])
-            found[-1].append(line.split("|")[1])
-        is_inside = is_row(line)
-    return found
+    groups = itertools.groupby(document.text, lambda numbered: is_row(numbered[1]))
+    return [[line.split("|")[1] for _, line in group] for is_table, group in groups if is_table]
 
 
 def keys_in(cells):
@@ -157,19 +137,16 @@ class Keys:
         for match in KEY.finditer(code):
             name, following = match[0], code[match.end():match.end() + 1]
             is_file = name.rpartition(".")[2] in FILE_SUFFIXES or following == "/"
-            is_call = following == "("
-            has_placeholder = name.endswith(".")
-            if name.partition(".")[0] in self.first_parts \
-                    and not (is_file or is_call or has_placeholder):
+            is_call, has_placeholder = following == "(", name.endswith(".")
+            if name.partition(".")[0] in self.first_parts and not (is_file or is_call or has_placeholder):
                 yield name
 
 
 def key_faults(document, keys):
-    code = document.inline_code()
-    named = [(number, name) for number, text in code for name in keys.names_in(text)]
-    named += [(number, name) for number, text in code + document.code_lines()
+    named = [(number, name) for number, text in document.inline_code for name in keys.names_in(text)]
+    named += [(number, name) for number, text in document.all_code
               for name in SETTING.findall(text) if not PLACEHOLDER.search(name)]
-    named += [(number, name) for number, text in document.code_lines()
+    named += [(number, name) for number, text in document.code
               for setting in SETTING_IN_FILE.findall(text) for name in keys.names_in(setting)]
     for number, name in sorted(set(named)):
         if not keys.exists(name):
@@ -177,7 +154,7 @@ def key_faults(document, keys):
 
 
 def link_faults(document, documents, root):
-    for number, line in document.text_lines():
+    for number, line in document.text:
         without_code = INLINE_CODE.sub(lambda match: " " * len(match[0]), line)
         for target in LINK.findall(without_code):
             if re.match(r"[a-z]+:", target):
@@ -190,34 +167,24 @@ def link_faults(document, documents, root):
                 yield number, f"the link leads to no heading: {target}"
 
 
-def modules_of(root):
-    """The folders of src and include/hullslam."""
-    return {path.name for top in ("src", "include/hullslam") for path in (root / top).glob("*")
-            if path.is_dir()}
-
-
 def files_in(code, modules):
     """The words of a piece of code that name a file of the repository."""
     for match in FILE.finditer(code):
         name = match[1].rstrip(PATH_END)
         top, _, rest = name.partition("/")
-        if "<" in name or (match.end() < len(code) and code[match.end()] in "<{$"):
+        if "<" in name or code[match.end():match.end() + 1] in tuple("<{$"):
             continue
-        is_source = re.search(r"\.(h|cc)$", name) is not None
+        is_source = name.endswith((".h", ".cc"))
         if top in FOLDERS and rest or top in modules | {"hullslam"} and is_source:
             yield name
 
 
-def file_exists(name, root):
-    return any(next(iter((root / top).glob(name)), None) is not None if "*" in name
-               else (root / top / name).exists()
-               for top in ("", "src", "include/hullslam", "include"))
-
-
 def file_faults(document, modules, root):
-    for number, text in document.inline_code() + document.code_lines():
+    folders = [root / top for top in ("", "src", "include/hullslam", "include")]
+    for number, text in document.all_code:
         for name in files_in(text, modules):
-            if not file_exists(name, root) and not PLACEHOLDER.search(name):
+            exists = any(any(top.glob(name)) if "*" in name else (top / name).exists() for top in folders)
+            if not exists and not PLACEHOLDER.search(name):
                 yield number, f"there is no file {name}"
 
 
@@ -230,10 +197,8 @@ def length_faults(document):
 
 
 def program_faults(documents, root):
-    pages = [document for document in documents
-             if document.name in ("docs/programs.md", "docs/library.md")]
-    named = " ".join(code for document in pages
-                     for _, code in document.inline_code() + document.code_lines())
+    pages = [document for document in documents if document.name in ("docs/programs.md", "docs/library.md")]
+    named = " ".join(code for page in pages for _, code in page.all_code)
     for path in sorted((root / "Examples").rglob("*.cc")):
         if not re.search(rf"\b{path.stem}\b", named):
             yield f"docs/programs.md: lacks the program {path.stem}"
@@ -256,7 +221,8 @@ def check_tree(root):
     if not documents:
         return [f"{root}: no documents"]
     keys = Keys(documents.values(), root)
-    modules = modules_of(root)
+    modules = {path.name for top in ("src", "include/hullslam") for path in (root / top).glob("*")
+               if path.is_dir()}
     faults = []
     for document in documents.values():
         found = [*key_faults(document, keys), *link_faults(document, documents, root),

@@ -19,7 +19,7 @@ import pathlib
 import re
 import sys
 
-from support import check_program
+from support import check_program, reachable
 
 USERS = ("Examples", "tools", "bench", "python", "tests/consumer")
 SOURCES = {".h", ".cc", ".hpp", ".cpp"}
@@ -46,24 +46,13 @@ def headers_of_users(root):
     return found
 
 
-def headers_with_users(headers, first):
-    """The headers named in `first`, those that they include, and so on."""
-    found, open_names = set(), sorted(first)
-    while open_names:
-        name = open_names.pop()
-        if name in headers and name not in found:
-            found.add(name)
-            open_names += INCLUDE.findall(headers[name])
-    return found
-
-
 def check_tree(root):
     """The faults of the tree at `root`, one line per fault. Finding no headers is a fault too."""
     root = pathlib.Path(root).resolve()
     headers = public_headers(root)
     if not headers:
         return [f"{root}: no headers in include/hullslam"]
-    used = headers_with_users(headers, headers_of_users(root))
+    used = reachable(headers_of_users(root), lambda name: INCLUDE.findall(headers.get(name, "")))
     return [f"include/{name}: no user of the library includes it; it belongs in "
             f"src/{pathlib.PurePath(name).parts[1]}" for name in headers if name not in used]
 

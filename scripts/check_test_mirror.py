@@ -19,36 +19,30 @@ FREE = {"integration", "support", "consumer", "fuzz", "scripts"}
 TEST = re.compile(r"^\s*(TYPED_)?TEST(_F|_P)?\s*\(", re.MULTILINE)
 
 
-def untested_headers(root):
-    headers = root / "include" / "hullslam"
-    for header in sorted(headers.rglob("*.h")):
-        test = pathlib.Path("tests") / header.relative_to(headers).with_suffix("")
-        test = test.with_name(test.name + "_test.cc")
-        if not (root / test).exists():
-            yield f"{header.relative_to(root)}: no {test}"
-
-
-def stray_tests(root):
-    tests = root / "tests"
+def check_tree(root):
+    """The faults of the tree at `root`, one line per fault. Finding no headers is a fault too."""
+    root = pathlib.Path(root).resolve()
+    public, private, tests = root / "include" / "hullslam", root / "src", root / "tests"
+    headers = sorted(public.rglob("*.h"))
+    if not headers:
+        return [f"{root}: no headers in include/hullslam"]
+    faults = []
+    for header in headers:
+        test = tests / header.relative_to(public).with_name(f"{header.stem}_test.cc")
+        if not test.exists():
+            faults.append(f"{header.relative_to(root)}: no {test.relative_to(root)}")
     for test in sorted(tests.rglob("*_test.cc")):
         inside = test.relative_to(tests)
         if inside.parts[0] in FREE:
             continue
-        header = inside.with_name(inside.name[:-len("_test.cc")] + ".h")
-        public = pathlib.Path("include/hullslam") / header
-        private = pathlib.Path("src") / header
-        if not any((root / path).exists() for path in (public, private, private.with_suffix(".cc"))):
-            yield f"{test.relative_to(root)}: neither {public} nor {private} nor its .cc exists"
+        name = inside.stem.removesuffix("_test") + ".h"
+        tested = [folder / inside.with_name(name) for folder in (public, private)]
+        if not any(path.exists() for path in (*tested, tested[1].with_suffix(".cc"))):
+            names = " nor ".join(str(header.relative_to(root)) for header in tested)
+            faults.append(f"{test.relative_to(root)}: neither {names} nor its .cc exists")
         if not TEST.search(test.read_text(encoding="utf-8")):
-            yield f"{test.relative_to(root)}: contains no test"
-
-
-def check_tree(root):
-    """The faults of the tree at `root`, one line per fault. Finding no headers is a fault too."""
-    root = pathlib.Path(root).resolve()
-    if not any((root / "include" / "hullslam").rglob("*.h")):
-        return [f"{root}: no headers in include/hullslam"]
-    return [*untested_headers(root), *stray_tests(root)]
+            faults.append(f"{test.relative_to(root)}: contains no test")
+    return faults
 
 
 if __name__ == "__main__":

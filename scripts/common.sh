@@ -22,16 +22,18 @@ print_help() {
   awk 'NR > 2 && !/^#/ {exit} NR > 2 {sub(/^# ?/, ""); print}' "$0"
 }
 
+# Prints the help text and ends, if the argument asks for it.
+help_if_asked() {
+  if [ "${1:-}" = -h ] || [ "${1:-}" = --help ]; then
+    print_help
+    exit 0
+  fi
+}
+
 # Reads the arguments of a script that only has --help.
 read_no_arguments() {
-  case "${1:-}" in
-    "") ;;
-    -h | --help)
-      print_help
-      exit 0
-      ;;
-    *) usage_error "unknown argument \"$1\"" ;;
-  esac
+  help_if_asked "$@"
+  [ -z "${1:-}" ] || usage_error "unknown argument \"$1\""
 }
 
 # Reads the arguments "[FOLDER]" of a script. The variable folder has the default before, and FOLDER

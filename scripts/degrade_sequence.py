@@ -25,13 +25,14 @@ import sys
 import tempfile
 import zlib
 
-from support import exit_code, InputError, parser_of, read_trajectory, require
+from support import exit_code, InputError, number, parser_of, read_trajectory, require
 
 require("numpy")
 import numpy as np  # noqa: E402
 
 from disturbances import DISTURBANCES  # noqa: E402
-from tum_and_icl import link, lists_of, read_frames  # noqa: E402
+from tum_and_icl import (check_empty, is_icl, link, link_descriptions, read_frames, write_icl,  # noqa: E402
+                         write_tum)
 from yolo_masks import mask_files, print_masks, read_masks  # noqa: E402
 
 
@@ -41,11 +42,8 @@ class Degrader:
     def __init__(self, arguments, out):
         self.sequence, self.out, self.seed = arguments.sequence, out, arguments.seed
         self.masks = None if arguments.no_masks else arguments.masks or self.sequence / "masks"
-        self.chosen = []
-        for row in DISTURBANCES:
-            amount = getattr(arguments, row.name.replace("-", "_"))
-            if amount is not None and amount is not False:
-                self.chosen.append((row, amount))
+        amounts = [(row, getattr(arguments, row.name.replace("-", "_"))) for row in DISTURBANCES]
+        self.chosen = [(row, amount) for row, amount in amounts if amount not in (None, False)]
         self.frames = read_frames(self.sequence)
 
     def random(self, name, index=0):
@@ -74,8 +72,8 @@ class Degrader:
     def write_images(self, kind, target):
         """Each image once, although several frames may show it."""
         changes = self.chosen_for(target)
-        paths = [frame.image if kind == "rgb" else frame.depth for frame in self.frames]
-        paths = list(dict.fromkeys(path for path in paths if path is not None))
+        paths = dict.fromkeys(getattr(frame, "image" if kind == "rgb" else kind) for frame in self.frames)
+        paths.pop(None, None)
         if paths:
             (self.out / kind).mkdir()
         for index, path in enumerate(paths):
@@ -95,8 +93,7 @@ class Degrader:
     def write_masks(self):
         target = self.out / "masks"
         target.mkdir()
-        stems = list(dict.fromkeys(frame.image.stem for frame in self.frames))
-        files = mask_files(self.masks, stems)
+        files = mask_files(self.masks, list(dict.fromkeys(frame.image.stem for frame in self.frames)))
         if (self.masks / "classes.txt").exists():
             link(self.masks / "classes.txt", target / "classes.txt")
         masks = {stem: read_masks(path) for stem, path in files.items()}
@@ -104,9 +101,9 @@ class Degrader:
         sources = {stem: stem for stem in files}
         for name, change, amount in self.chosen_for("mask files"):
             sources = change(list(files), amount, self.random(name))
-        changes = self.chosen_for("masks")
-        needs_size = any(name in ("mask-shift", "mask-rough") for name, _, _ in changes)
-        size = self.image_size() if needs_size else None
+        changes, size = self.chosen_for("masks"), None
+        if any(name == "mask-shift" for name, _, _ in changes):
+            size = np.array(read_image(self.frames[0].image, "rgb").shape[1::-1], dtype=float)
         for index, (stem, source) in enumerate(sources.items()):
             if not changes:
                 link(files[source], target / f"{stem}.txt")
@@ -115,9 +112,6 @@ class Degrader:
             for name, change, amount in changes:
                 of_image = change(of_image, amount, self.random(name, index), classes, size)
             (target / f"{stem}.txt").write_text(print_masks(of_image), encoding="utf-8")
-
-    def image_size(self):
-        return np.array(read_image(self.frames[0].image, "rgb").shape[1::-1], dtype=float)
 
     def write_groundtruth(self):
         for path in self.sequence.glob("*.gt.freiburg"):
@@ -132,31 +126,22 @@ class Degrader:
         stamps, poses = read_trajectory(source)
         lines = ["# timestamp tx ty tz qx qy qz qw of each image, under its new stamp\n"]
         for frame in self.frames:
-            pose = interpolate(np.asarray(stamps), np.asarray(poses), frame.taken)
-            if pose is not None:
-                numbers = " ".join(f"{value:.6f}" for value in pose)
-                lines.append(f"{frame.stamp:.6f} {numbers}\n")
+            if (pose := interpolate(stamps, poses, frame.taken)) is not None:
+                lines.append(" ".join(f"{value:.6f}" for value in (frame.stamp, *pose)) + "\n")
         (self.out / "groundtruth.txt").write_text("".join(lines), encoding="utf-8")
-
-    def check_masks_are_not_needed(self):
-        for row, _ in self.chosen:
-            if set(row.changes) <= {"masks", "mask files"}:
-                raise InputError(f"--{row.name} needs masks, and {self.sequence} has no folder "
-                                 "masks; --masks says where they are")
 
     def run(self):
         self.change_frames()
         if self.masks is not None and self.masks.is_dir():
             self.write_masks()
-        else:
-            self.check_masks_are_not_needed()
-        lists_of(self.sequence).write(self.out, self.frames, self.name)
+        elif needing := [row.name for row, _ in self.chosen if set(row.changes) <= {"masks", "mask files"}]:
+            raise InputError(f"--{needing[0]} needs masks, and {self.sequence} has no folder masks; "
+                             "--masks says where they are")
+        (write_icl if is_icl(self.sequence) else write_tum)(self.out, self.frames, self.name)
         self.write_images("rgb", "image")
         self.write_images("depth", "depth")
         self.write_groundtruth()
-        for name in ("camera.yaml", "groundtruth_objects.json"):
-            if (self.sequence / name).exists():
-                link(self.sequence / name, self.out / name)
+        link_descriptions(self.sequence, self.out)
 
 
 def read_image(path, kind):
@@ -190,10 +175,7 @@ def interpolate(stamps, poses, time):
 def degrade(arguments):
     """Writes OUT as a whole."""
     out = arguments.out.resolve()
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out}: exists and is no folder")
-    if out.exists() and any(out.iterdir()):
-        raise InputError(f"{out}: is not empty")
+    check_empty(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     staging = pathlib.Path(tempfile.mkdtemp(prefix=f"{out.name}.partial-", dir=out.parent))
     try:
@@ -215,15 +197,12 @@ def parse(words):
     masks.add_argument("--masks", type=pathlib.Path, metavar="FOLDER",
                        help="masks of IN, format yolo-seg (default: its folder masks, if any)")
     masks.add_argument("--no-masks", action="store_true", help="OUT gets no masks")
-    parser.add_argument("--seed", type=int, default=0, help="of all random choices (default 0)")
+    parser.add_argument("--seed", type=number(0, kind=int), default=0,
+                        help="of all random choices (default 0)")
     for row in DISTURBANCES:
-        if row.type is None:
-            parser.add_argument(f"--{row.name}", action="store_true", help=row.help)
-        else:
-            parser.add_argument(f"--{row.name}", type=row.type, metavar=row.metavar, help=row.help)
+        amount = {"type": row.type, "metavar": row.metavar} if row.type else {"action": "store_true"}
+        parser.add_argument(f"--{row.name}", help=row.help, **amount)
     arguments = parser.parse_args(words)
-    if arguments.seed < 0:
-        parser.error("--seed must be 0 or more")
     if arguments.masks and not arguments.masks.is_dir():
         parser.error(f"--masks: {arguments.masks} is no folder, expected masks in the format "
                      "yolo-seg, one text file per image")

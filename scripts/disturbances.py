@@ -4,21 +4,14 @@ table."""
 
 import argparse
 import dataclasses
-import pathlib
 
 import numpy as np
+
+from support import number
 
 MIN_STEP = 1e-4  # s, from one late stamp to the next
 BRIGHTNESS_PERIOD = 30  # images with the same brightness
 HOLE = 32  # px, side of a hole in a depth image
-
-
-@dataclasses.dataclass
-class Frame:
-    stamp: float  # s, the one that is written
-    taken: float  # s, when the image was really taken
-    image: pathlib.Path
-    depth: pathlib.Path = None
 
 
 # ---- stamps and lists: functions (frames, amount, random numbers) -> frames
@@ -80,14 +73,10 @@ def depth_holes(depth, share, rng, _):
     return depth
 
 
-def resize_image(image, size, *_):
+def resize(image, size, *_):
     import cv2
-    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
-
-
-def resize_depth(depth, size, *_):
-    import cv2
-    return cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST)  # no mean of two surfaces
+    is_depth = image.ndim == 2  # the mean of two surfaces would be no surface
+    return cv2.resize(image, size, interpolation=cv2.INTER_NEAREST if is_depth else cv2.INTER_AREA)
 
 
 # ---- masks: functions (masks, amount, random numbers, classes of the sequence, size) -> masks
@@ -124,15 +113,6 @@ def mask_swap(images, share, rng):
 # ---- the table of disturbances
 
 
-def number_in(low, high):
-    def parse(text):
-        value = float(text)
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a number from {low} to {high}")
-        return value
-    return parse
-
-
 def share_of_images(text):
     try:
         count, period = (int(word) for word in text.split("/"))
@@ -160,7 +140,7 @@ class Disturbance:
     changes: dict  # what it changes (frames, image, depth, masks, mask files) -> function
 
 
-MILLISECONDS, SHARE = number_in(0.0, 1e4), number_in(0.0, 1.0)
+MILLISECONDS, SHARE = number(0.0, 1e4), number(0.0, 1.0)
 DISTURBANCES = [
     Disturbance("missing", share_of_images, "N/M", "the last N of every M images are missing; 1/M "
                 "drops every M-th image", {"frames": missing}),
@@ -174,18 +154,18 @@ DISTURBANCES = [
     Disturbance("late", MILLISECONDS, "MS",
                 "each stamp is late by |N(0, MS ms)|, but never before the stamp before it",
                 {"frames": late}),
-    Disturbance("blur", number_in(0.1, 100.0), "PX", "images are blurred by a Gaussian of PX px",
+    Disturbance("blur", number(0.1, 100.0), "PX", "images are blurred by a Gaussian of PX px",
                 {"image": blur}),
-    Disturbance("brightness", number_in(0.0, 10.0), "FACTOR",
+    Disturbance("brightness", number(0.0, 10.0), "FACTOR",
                 f"images {BRIGHTNESS_PERIOD} to {2 * BRIGHTNESS_PERIOD - 1} are brighter by this "
                 "factor, and so on in turn", {"image": brightness}),
-    Disturbance("noise", number_in(0.0, 255.0), "LEVELS",
+    Disturbance("noise", number(0.0, 255.0), "LEVELS",
                 "noise of so many grey levels is added to images", {"image": noise}),
     Disturbance("depth-holes", SHARE, "SHARE", f"this share of the squares of {HOLE} px of a depth "
                 "image has no depth", {"depth": depth_holes}),
     Disturbance("resize", image_size, "WxH", "images and depth get this size, in px; the settings of "
-                "the camera must then be others", {"image": resize_image, "depth": resize_depth}),
-    Disturbance("mask-shift", number_in(0.0, 1e4), "PX",
+                "the camera must then be others", {"image": resize, "depth": resize}),
+    Disturbance("mask-shift", number(0.0, 1e4), "PX",
                 "each mask is moved by PX px in a random direction", {"masks": mask_shift}),
     Disturbance("mask-drop", SHARE, "SHARE", "this share of the masks is missing",
                 {"masks": mask_drop}),

@@ -7,11 +7,13 @@ page explains before, such as `options` and `system`; the class DocsExample of t
 them. Errors of the compiler name the document and its line.
 """
 
-import argparse
 import pathlib
 import re
 import sys
 
+from support import exit_code, InputError, parser_of, read_text
+
+BLOCK = re.compile(r"^[ \t]*```cpp[ \t]*\n(.*?)(^[ \t]*```[ \t]*$|\Z)", re.MULTILINE | re.DOTALL)
 HEAD = """// SPDX-License-Identifier: GPL-3.0-or-later
 // Written by scripts/docs_examples.py.
 #include "docs/given.h"
@@ -22,18 +24,11 @@ namespace {
 
 def blocks_of(text):
     """The line number of the first line of code and the code, of each C++ block."""
-    begin, code = None, []
-    for number, line in enumerate(text.splitlines(), start=1):
-        if begin is None:
-            if line.strip() == "```cpp":
-                begin, code = number + 1, []
-        elif line.strip() == "```":
-            yield begin, "\n".join(code)
-            begin = None
-        else:
-            code.append(line)
-    if begin is not None:
-        raise ValueError(f"line {begin - 1}: the block has no end")
+    for match in BLOCK.finditer(text):
+        begin = text.count("\n", 0, match.start(1)) + 1
+        if not match[2]:
+            raise InputError(f"line {begin - 1}: the block has no end")
+        yield begin, match[1].rstrip("\n")
 
 
 def program(documents):
@@ -47,18 +42,13 @@ def program(documents):
     return "\n".join([*parts, "}  // namespace", ""])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("documents", nargs="+", type=pathlib.Path, metavar="DOCUMENT")
-    parser.add_argument("--output", required=True, type=pathlib.Path, metavar="FILE.cc")
-    arguments = parser.parse_args()
-    try:
-        text = program([(path, path.read_text(encoding="utf-8")) for path in arguments.documents])
-    except (OSError, ValueError) as error:
-        sys.exit(f"docs_examples.py: {error}")
+def run(arguments):
+    text = program([(path, read_text(path)) for path in arguments.documents])
     arguments.output.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    parser = parser_of(__doc__)
+    parser.add_argument("documents", nargs="+", type=pathlib.Path, metavar="DOCUMENT")
+    parser.add_argument("--output", required=True, type=pathlib.Path, metavar="FILE.cc")
+    sys.exit(exit_code(run, parser.parse_args()))

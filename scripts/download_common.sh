@@ -98,8 +98,27 @@ unpack_into() {
   fi
 }
 
-# Reads the options and the names, and calls fetch for each name as plain_name prints it. The
-# variables base and checksums have the defaults of the script.
+# Downloads the archive $1 from the URL $2 and unpacks its folder $3 (empty: all of it) as $4, which is $5
+# and must have the files and folders $6.... `complete`, a function of the script, may add files.
+fetch_sequence() {
+  local file=$1 url=$2 inner=$3 folder=$4 kind=$5 needed
+  local work=$folder.unpacking
+  local made=$work${inner:+/$inner}
+  [ -s "$file" ] || download "$url" "$file"
+  unpack_into "$file" "$inner" "$work"
+  for needed in "${@:6}"; do
+    if [ ! -d "$made/$needed" ] && [ ! -s "$made/$needed" ]; then
+      rm -rf "$work"
+      refuse "$PWD/$file" "it is not $kind, as it has no ${inner:+$inner/}$needed"
+    fi
+  done
+  complete "$made"
+  mv "$made" "$folder"
+  rm -rf "$work" "$file"
+}
+
+# Reads the options and the names, and calls fetch for each name as plain_name prints it, unless its
+# folder, which folder_of prints, exists. The variables base and checksums have the defaults of the script.
 # shellcheck disable=SC2034  # fetch uses base
 download_all() {
   to=.
@@ -107,11 +126,8 @@ download_all() {
   max_size=20
   names=()
   while [ $# -gt 0 ]; do
+    help_if_asked "$1"
     case "$1" in
-      -h | --help)
-        print_help
-        exit 0
-        ;;
       --to | --base | --checksums | --max-size)
         [ -n "${2:-}" ] || usage_error "$1 needs a value"
         case "$1" in
@@ -141,6 +157,10 @@ download_all() {
   mkdir -p -- "$to" || fail "cannot create the folder $to"
   cd -- "$to" || fail "cannot use the folder $to"
   for name in "${names[@]}"; do
-    fetch "$name"
+    if [ -d "$(folder_of "$name")" ]; then
+      printf '%s exists already.\n' "$PWD/$(folder_of "$name")"
+    else
+      fetch "$name" "$(folder_of "$name")"
+    fi
   done
 }

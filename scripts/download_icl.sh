@@ -31,37 +31,22 @@ living_room_traj0 to living_room_traj3, with n at the end for those with noise"
   printf '%s_frei_png' "$name"
 }
 
-# Prints the name of the true trajectory of an archive.
-groundtruth_name() {
-  local name=${1%_frei_png}
-  printf '%s.gt.freiburg' "${name/living_room_traj/livingRoom}"
+folder_of() {
+  printf '%s' "$1"
+}
+
+# Adds the true trajectory to the unpacked sequence $1, unless it has one.
+complete() {
+  local truth=${name%_frei_png}
+  truth=${truth/living_room_traj/livingRoom}.gt.freiburg
+  compgen -G "$1/*.gt.freiburg" >/dev/null || download "$base/VaFRIC/$truth" "$1/$truth"
 }
 
 # The archives have no folder of their own: rgb, depth and associations.txt are at the top.
-unpack() {
-  local file=$1 folder=$2 work=$3 needed
-  unpack_into "$file" "" "$work"
-  for needed in rgb depth associations.txt; do
-    if [ ! -e "$work/$needed" ]; then
-      rm -rf "$work"
-      refuse "$PWD/$file" "it is not a sequence of ICL-NUIM, as it has no $needed"
-    fi
-  done
-  if ! compgen -G "$work/*.gt.freiburg" >/dev/null; then
-    download "$base/VaFRIC/$(groundtruth_name "$folder")" "$work/$(groundtruth_name "$folder")"
-  fi
-  mv "$work" "$folder"
-  rm -f "$file"
-}
-
 fetch() {
-  local folder=$1
-  if [ -d "$folder" ]; then
-    printf '%s exists already.\n' "$PWD/$folder"
-    return
-  fi
-  [ -s "$folder.tar.gz" ] || download "$base/$folder.tar.gz" "$folder.tar.gz"
-  unpack "$folder.tar.gz" "$folder" "$folder.unpacking"
+  local name=$1 folder=$2
+  fetch_sequence "$folder.tar.gz" "$base/$folder.tar.gz" "" "$folder" "a sequence of ICL-NUIM" \
+    rgb depth associations.txt
   printf '%s: %d pairs of images\n' "$PWD/$folder" "$(grep -c . "$folder/associations.txt")"
 }
 

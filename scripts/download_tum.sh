@@ -30,27 +30,16 @@ plain_name() {
   printf '%s' "$name"
 }
 
-unpack() {
-  local file=$1 folder=$2 work=$3 list
-  unpack_into "$file" "$folder" "$work"
-  for list in rgb.txt depth.txt groundtruth.txt; do
-    if [ ! -s "$work/$folder/$list" ]; then
-      rm -rf "$work"
-      refuse "$PWD/$file" "it is not a TUM RGB-D sequence, as it has no $folder/$list"
-    fi
-  done
-  mv "$work/$folder" "$folder"
-  rm -rf "$work" "$file"
+folder_of() {
+  printf 'rgbd_dataset_%s' "$1"
 }
 
+complete() { :; }
+
 fetch() {
-  local name=$1 folder="rgbd_dataset_$1"
-  if [ -d "$folder" ]; then
-    printf '%s exists already.\n' "$PWD/$folder"
-    return
-  fi
-  [ -s "$folder.tgz" ] || download "$base/${name%%_*}/$folder.tgz" "$folder.tgz"
-  unpack "$folder.tgz" "$folder" "$folder.unpacking"
+  local name=$1 folder=$2
+  fetch_sequence "$folder.tgz" "$base/${name%%_*}/$folder.tgz" "$folder" "$folder" \
+    "a TUM RGB-D sequence" rgb.txt depth.txt groundtruth.txt
   printf '%s: %d colour images\n' "$PWD/$folder" "$(grep -cv '^#' "$folder/rgb.txt")"
 }
 

@@ -2,66 +2,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the pictures of docs/architecture.md into docs/images.
 
-architecture_modules.dot is written from LEVELS of check_layers.py, and
-architecture_data_flow.dot is written by hand. The program `dot` of
-Graphviz (Debian package graphviz) makes SVG files from both. With --check nothing is drawn, and `dot` is not needed: the
-script fails if architecture_modules.dot does not agree with LEVELS, or if a picture lacks a text of
-its .dot file.
+architecture_modules.dot is written from modules.toml, and architecture_data_flow.dot is written by
+hand. The program `dot` of Graphviz (Debian package graphviz) makes SVG files from both. With --check
+nothing is drawn, and `dot` is not needed: the script fails if architecture_modules.dot does not agree
+with modules.toml, or if a picture lacks a text of its .dot file.
 """
 
-import argparse
 import html
-import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-from check_layers import LEVELS
+from check_layers import LEVELS, MODULES
+from support import exit_code, InputError, parser_of, SCRIPTS
 
-IMAGES = pathlib.Path(__file__).resolve().parent.parent / "docs" / "images"
-MODULES = "architecture_modules"
+IMAGES = SCRIPTS.parent / "docs" / "images"
+MODULES_PICTURE = "architecture_modules"
 DATA_FLOW = "architecture_data_flow"
 
-# The content of each module. A module without an entry is drawn with its name only.
-CONTENTS = {
-    "util": "ids, tables, checks, options",
-    "files": "safe reading and writing",
-    "geometry": "poses, conics, quadrics, hulls",
-    "bags": "recordings of ROS",
-    "camera": "pinhole, depth errors",
-    "features": "ORB",
-    "estimators": "RANSAC: poses, similarities",
-    "bow": "vocabulary, words",
-    "frame": "image, masks, detections",
-    "costs": "one residual per file",
-    "matching": "keypoints with landmarks",
-    "map": "keyframes, landmarks, objects",
-    "objects": "start, refinement, validity",
-    "places": "similar keyframes",
-    "optim": "bundle adjustment, pose graph",
-    "tracking": "pose of a frame",
-    "mapping": "keyframes, local map",
-    "loop": "loops, returns, islands",
-    "system": "class System, pipelines",
-    "report": "lost frames, objects",
-    "calibration": "camera of recordings",
-    "eval": "ATE, RPE, SIoU",
-    "scene": "relations, questions",
-    "settings": "YAML, ORB-SLAM3's keys",
-    "results": "trajectories, objects, PLY",
-    "images": "PNG, JPEG, video frames",
-    "sequences": "TUM, ICL, EuRoC, video",
-    "datasets": "the table of data sets",
-    "masks": "seven formats",
-    "view": "data of the page",
-    "live": "live view in a browser",
-    "exports": "files for other programs",
-    "segmentation": "masks by networks",
-    "map_files": "maps, vocabularies",
-    "run": "what all programs share",
-}
-
+CONTENTS = {module: content for modules in MODULES.values() for module, content in modules.items()}
 # Colours of the boxes: the foundation, the parts of the map, the stages, and the parts that a user
 # calls. Each colour is used from the level of the named module on.
 COLOURS = (("util", "#e8f0f8"), ("frame", "#e3f2e1"), ("objects", "#fdf0d5"), ("system", "#f3e6f2"))
@@ -74,11 +34,9 @@ def colour(level, levels):
 
 def cell(module, shade):
     """A table cell with the name and the content of a module."""
-    text = f"<B>{html.escape(module)}</B>"
-    if module in CONTENTS:
-        text += f'  <FONT POINT-SIZE="12">{html.escape(CONTENTS[module])}</FONT>'
+    content = f'  <FONT POINT-SIZE="12">{html.escape(CONTENTS.get(module, ""))}</FONT>'
     return (f'<TD BORDER="1" COLOR="#8a94a0" STYLE="ROUNDED" BGCOLOR="{shade}" '
-            f'CELLPADDING="7">{text}</TD>')
+            f'CELLPADDING="7"><B>{html.escape(module)}</B>{content}</TD>')
 
 
 def rows(levels):
@@ -92,7 +50,7 @@ def rows(levels):
 def modules_dot(levels):
     """The text of architecture_modules.dot."""
     lines = [
-        "// Written by scripts/draw_architecture.py from LEVELS of scripts/check_layers.py.",
+        "// Written by scripts/draw_architecture.py from scripts/modules.toml.",
         "digraph modules {",
         '  graph [bgcolor="white", pad=0.2]',
         '  node [shape=plain, fontname="Helvetica,Arial,sans-serif", fontsize=14]',
@@ -124,10 +82,10 @@ def labels(dot):
 def faults(folder, levels):
     """What is wrong with the stored pictures in `folder`, as a list of lines."""
     found = []
-    stored = folder / f"{MODULES}.dot"
+    stored = folder / f"{MODULES_PICTURE}.dot"
     if not stored.exists() or stored.read_text(encoding="utf-8") != modules_dot(levels):
-        found.append(f"{stored}: is not what LEVELS of check_layers.py says")
-    for name in (MODULES, DATA_FLOW):
+        found.append(f"{stored}: is not what modules.toml says")
+    for name in (MODULES_PICTURE, DATA_FLOW):
         dot, svg = folder / f"{name}.dot", folder / f"{name}.svg"
         for path in (dot, svg):
             if not path.exists():
@@ -142,31 +100,22 @@ def faults(folder, levels):
 
 def draw(folder, levels):
     """Writes architecture_modules.dot and both pictures into `folder`."""
-    (folder / f"{MODULES}.dot").write_text(modules_dot(levels), encoding="utf-8")
-    for name in (MODULES, DATA_FLOW):
+    if shutil.which("dot") is None:
+        raise InputError("the program dot is missing; install the Debian package graphviz")
+    (folder / f"{MODULES_PICTURE}.dot").write_text(modules_dot(levels), encoding="utf-8")
+    for name in (MODULES_PICTURE, DATA_FLOW):
         subprocess.run(["dot", "-Tsvg", f"{name}.dot", "-o", f"{name}.svg"], cwd=folder, check=True)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="only compare the stored pictures")
-    parser.add_argument("--images", type=pathlib.Path, default=IMAGES, metavar="DIR",
-                        help="folder of the .dot and .svg files (default: docs/images)")
-    arguments = parser.parse_args()
-    if arguments.check:
-        found = faults(arguments.images, LEVELS)
-        if found:
-            print("\n".join(found), file=sys.stderr)
-            print("run scripts/draw_architecture.py", file=sys.stderr)
-        return 1 if found else 0
-    if shutil.which("dot") is None:
-        print("error: the program dot is missing; install the Debian package graphviz",
-              file=sys.stderr)
-        return 2
-    draw(arguments.images, LEVELS)
-    return 0
+def run(arguments):
+    if not arguments.check:
+        return draw(IMAGES, LEVELS)
+    if found := faults(IMAGES, LEVELS):
+        print("\n".join([*found, "run scripts/draw_architecture.py"]), file=sys.stderr)
+    return 1 if found else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    parser = parser_of(__doc__)
+    parser.add_argument("--check", action="store_true", help="only compare the stored pictures")
+    sys.exit(exit_code(run, parser.parse_args()))

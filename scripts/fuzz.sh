@@ -15,11 +15,8 @@ cd "$top"
 seconds=
 readers=()
 while [ $# -gt 0 ]; do
+  help_if_asked "$1"
   case "$1" in
-    -h | --help)
-      print_help
-      exit 0
-      ;;
     -*) usage_error "unknown argument \"$1\"" ;;
     *)
       if [ -z "$seconds" ]; then

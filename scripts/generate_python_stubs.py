@@ -10,17 +10,17 @@ library. python/hullslam/_core.pyi is written by hand; only its docstrings are t
 --check: writes nothing; fails if a file is not the one that would be written.
 """
 
-import argparse
 import ast
 import inspect
-import pathlib
 import sys
 import textwrap
 
 import hullslam
 from hullslam import _core
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "python" / "hullslam"
+from support import parser_of, SCRIPTS
+
+PACKAGE = SCRIPTS.parent / "python" / "hullslam"
 HEAD = '''# SPDX-License-Identifier: GPL-3.0-or-later
 # Written by scripts/generate_python_stubs.py.
 import os
@@ -159,8 +159,7 @@ def settings_stub():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--check", action="store_true")
     is_check = parser.parse_args().check
     for name, text in (("_core.pyi", core_stub()), ("_settings.pyi", settings_stub())):

@@ -19,13 +19,15 @@ Exit codes: 0 done, 2 bad usage or input.
 import pathlib
 import sys
 
-from support import exit_code, InputError, parser_of, require
-from tum_and_icl import link, read_rows
+from support import exit_code, InputError, number, parser_of, require
 
 require("numpy", "PIL")
 import numpy as np  # noqa: E402
 import PIL.Image  # noqa: E402
 
+from run_alignment import pair  # noqa: E402
+from tum_and_icl import (check_empty, link, link_descriptions, read_rows, stamps_of,  # noqa: E402
+                         write_images)
 
 KINDS = ("rgb", "depth")
 
@@ -50,94 +52,72 @@ def blank_images(stamps, like, out):
 
 def images_of_other(stamps, images):
     """The first images of another sequence, with the given stamps."""
-    times = np.array([stamp for stamp, *_ in images["depth"]])
-    found = {kind: [] for kind in KINDS}
-    for new, (stamp, *files) in zip(stamps, images["rgb"]):
-        found["rgb"].append((new, *files))
-        nearest = int(np.argmin(np.abs(times - stamp)))
-        if abs(times[nearest] - stamp) < 0.02:
-            found["depth"].append((new, *images["depth"][nearest][1:]))
-    return found
+    first = images["rgb"][:len(stamps)]
+    return {"rgb": [(new, *files) for new, (_, *files) in zip(stamps, first)],
+            "depth": [(stamps[i], *images["depth"][j][1:])
+                      for i, j in pair(stamps_of(first), stamps_of(images["depth"]))]}
 
 
-def write_images(out, images):
+def link_images(out, images):
     """Writes links to the images (kind -> [(stamp, image, masks)]), their masks and their lists."""
     for kind, rows in images.items():
-        lines = ["# timestamp filename\n"]
         for stamp, image, masks in rows:
-            name = f"{kind}/{stamp:.6f}.png"
-            link(image, out / name)
-            lines.append(f"{stamp:.6f} {name}\n")
+            link(image, out / kind / f"{stamp:.6f}.png")
             target = out / "masks" / f"{stamp:.6f}.txt"
             if kind == "rgb" and masks is not None and masks.exists():
                 link(masks, target)
             elif kind == "rgb":
                 target.write_text("")
-        (out / f"{kind}.txt").write_text("".join(lines))
+        write_images(out / f"{kind}.txt", [(stamp, f"{kind}/{stamp:.6f}.png") for stamp, *_ in rows])
 
 
-class Part:
-    """The frames from one stamp up to, but not including, another one. Their stamps are shifted."""
-
-    def __init__(self, begin, end, shift):
-        self.begin, self.end, self.shift = begin, end, shift
-
-    def rows(self, rows):
-        return [row for row in rows if self.begin <= row[0] < self.end]
-
-    def images(self, images):
-        """(stamp, image, masks) of the part, with the new stamps."""
-        return [(stamp + self.shift, *files) for stamp, *files in self.rows(images)]
+def part_of(rows, begin, end, shift):
+    """The rows (stamp, ...) from one stamp up to, but not including, another one, with shifted stamps."""
+    return [(stamp + shift, *others) for stamp, *others in rows if begin <= stamp < end]
 
 
 def split(arguments, stamps, interval):
-    """The parts of the sequence before and after the frames in between."""
+    """The parts (begin, end, shift) of the sequence before and after the frames in between."""
     gap = arguments.blank * interval
-    # Stamps of depth and ground truth differ from those of the images by up to half an interval.
-    first, last = stamps[0] - interval / 2, stamps[-1] + interval / 2
     if arguments.again:
-        return Part(-np.inf, np.inf, 0.0), Part(-np.inf, np.inf, last - first + gap)
+        return (-np.inf, np.inf, 0.0), (-np.inf, np.inf, stamps[-1] - stamps[0] + interval + gap)
     at = len(stamps) // 2 if arguments.at is None else arguments.at
     if not 2 <= at <= len(stamps) - 1:
         raise InputError(f"--at is {at}, expected 2 to {len(stamps) - 1}")
+    # Stamps of depth and ground truth differ from those of the images by up to half an interval.
     leave = (stamps[at - 1] + stamps[at]) / 2
-    return Part(-np.inf, leave, 0.0), Part(leave, np.inf, gap)
+    return (-np.inf, leave, 0.0), (leave, np.inf, gap)
 
 
 def write_groundtruth(sequence, out, parts, between, interval):
     """Writes groundtruth.txt without poses near the frames in between, which they would be paired with."""
-    lines = []
-    for part in parts:
-        for stamp, words in part.rows(read_rows(sequence / "groundtruth.txt")):
-            new = stamp + part.shift
-            if new < between[0] - 0.75 * interval or new > between[-1] + 0.75 * interval:
-                lines.append(f"{new:.6f} {' '.join(words)}\n")
-    (out / "groundtruth.txt").write_text("".join(lines))
+    rows = read_rows(sequence / "groundtruth.txt")
+    first, last = between[0] - 0.75 * interval, between[-1] + 0.75 * interval
+    (out / "groundtruth.txt").write_text("".join(
+        f"{stamp:.6f} {' '.join(words)}\n" for part in parts for stamp, words in part_of(rows, *part)
+        if not first <= stamp <= last))
 
 
 def make(arguments):
     sequence, out, count = arguments.sequence, arguments.out, arguments.blank
     images = images_of(sequence)
-    stamps = np.array([stamp for stamp, *_ in images["rgb"]])
+    stamps = stamps_of(images["rgb"])
     interval = float(np.median(np.diff(stamps)))
     if not interval > 0.0:
         raise InputError(f"{sequence / 'rgb.txt'}: the time stamps do not increase")
     parts = before, after = split(arguments, stamps, interval)
-    if out.exists() and any(out.iterdir()):
-        raise InputError(f"{out}: is not empty")
+    check_empty(out)
     other = arguments.other and images_of(arguments.other)
     if other and len(other["rgb"]) < count:
         raise InputError(f"{arguments.other}: has fewer than {count} frames")
     for name in (*KINDS, "masks"):
         (out / name).mkdir(parents=True)
-    first, last = before.images(images["rgb"]), after.images(images["rgb"])
+    first, last = part_of(images["rgb"], *before), part_of(images["rgb"], *after)
     between = first[-1][0] + interval * np.arange(1, count + 1)
     filling = images_of_other(between, other) if other else blank_images(between, images["rgb"][0][1], out)
-    write_images(out, {kind: [*before.images(rows), *filling[kind], *after.images(rows)]
-                       for kind, rows in images.items()})
-    for name in ("camera.yaml", "groundtruth_objects.json"):
-        if (sequence / name).exists():
-            link(sequence / name, out / name)
+    link_images(out, {kind: [*part_of(rows, *before), *filling[kind], *part_of(rows, *after)]
+                      for kind, rows in images.items()})
+    link_descriptions(sequence, out)
     if (sequence / "groundtruth.txt").exists():
         write_groundtruth(sequence, out, parts, between, interval)
     print(f"{out}: {len(first)} frames, {count} of something else, {len(last)} frames")
@@ -147,7 +127,7 @@ def main(words=None):
     parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("out", type=pathlib.Path, metavar="OUT")
-    parser.add_argument("--blank", type=int, default=200, metavar="N",
+    parser.add_argument("--blank", type=number(1, kind=int), default=200, metavar="N",
                         help="number of frames in between (default 200)")
     parser.add_argument("--other", type=pathlib.Path, metavar="SEQUENCE",
                         help="sequence whose first frames come in between (default: blank images)")
@@ -158,8 +138,6 @@ def main(words=None):
     arguments = parser.parse_args(words)
     if arguments.again and arguments.at is not None:
         parser.error("--again and --at exclude each other")
-    if arguments.blank < 1:
-        parser.error("--blank must be 1 or more")
     return exit_code(make, arguments, failure=2)
 
 

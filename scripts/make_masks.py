@@ -15,7 +15,7 @@ which HullSLAM reads.
 
 Both networks are those of the Python package ultralytics (pip install ultralytics), which downloads
 their weights when they are used first. Start this script with the Python that has the package; it
-also needs HullSLAM's module (docs/python.md), and numpy and contourpy, which come with ultralytics.
+also needs HullSLAM's module (docs/python.md), and numpy, which comes with ultralytics.
 --refine none keeps the masks of YOLO.
 
 Exit codes: 0 done, 1 interrupted or failed, 2 bad usage or input.
@@ -26,7 +26,7 @@ import pathlib
 import sys
 import time
 
-from support import exit_code, hullslam_module, InputError, one_line, parser_of, read_json, write
+from support import exit_code, hullslam_module, InputError, number, one_line, parser_of, read_json, write
 
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
@@ -59,13 +59,9 @@ def orientation_of(path):
 
 def turn(image, orientation):
     """A stored image (height, width, ...) as a viewer shows it."""
-    import numpy as np
-    if orientation in (6, 8):
-        return np.rot90(image, -1 if orientation == 6 else 1)
-    if orientation in (5, 7):
+    if orientation in (5, 6, 7, 8):
         image = image.swapaxes(0, 1)
-    across = orientation in (2, 3, 7)
-    down = orientation in (3, 4, 7)
+    across, down = orientation in (2, 3, 6, 7), orientation in (3, 4, 7, 8)
     return image[::-1 if down else 1, ::-1 if across else 1]
 
 
@@ -74,55 +70,30 @@ def turn_back(image, orientation):
     return turn(image, {6: 8, 8: 6}.get(orientation, orientation))
 
 
-# ---- outlines
-
-
-def outline_of(mask):
-    """The outline (n x 2, pixels) of the largest part of a mask (height x width, 0 or 1), and its
-    area.
-
-    The centres of pixels have integer coordinates. The outline runs halfway between the centres of
-    the pixels inside and outside, so it is an unbiased silhouette (docs/masks.md).
-    """
-    import contourpy
+def area_of(outline):
+    """The area within an outline (n x 2)."""
     import numpy as np
-    padded = np.pad(np.asarray(mask, dtype=float), 1)  # a mask may touch the border of the image
-    best, largest = None, 0.0
-    for line in contourpy.contour_generator(z=padded).lines(0.5):
-        x, y = line[:-1, 0], line[:-1, 1]
-        area = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
-        if area > largest:
-            best, largest = line[:-1] - 1.0, area
-    return best, largest
-
-
-def without_straight_points(outline):
-    """The outline without the points that lie on the line between their neighbours."""
-    import numpy as np
-    before, after = outline - np.roll(outline, 1, axis=0), np.roll(outline, -1, axis=0) - outline
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return outline[np.abs(turn) > 1e-9]
-
-
-def yolo_line(number, outline, score, size):
-    """A line of a yolo-seg file: class, x and y as shares of width and height, confidence."""
-    width, height = size
-    numbers = [f"{min(1.0, max(0.0, value)):.6g}"
-               for x, y in outline for value in (x / width, y / height)]
-    return f"{number} {' '.join(numbers)} {min(1.0, max(0.0, score)):.4f}\n"
+    x, y = outline.T
+    return 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
 
 
 def yolo_text(detections):
-    """The content of a file for [(class, confidence, mask)] of an image."""
-    lines = []
-    for number, score, mask in detections:
-        outline, area = outline_of(mask)
-        if outline is None or area < MIN_AREA:
-            continue
-        outline = without_straight_points(outline)
-        if len(outline) >= 3:
-            lines.append(yolo_line(number, outline, score, (mask.shape[1], mask.shape[0])))
-    return "".join(lines)
+    """The content of a file for [(class, confidence, mask)] of an image: of each mask the outline of its
+    largest part, as shares of the image's size.
+
+    The outline runs halfway between the centres of the pixels inside and outside, so it is an unbiased
+    silhouette (docs/masks.md).
+    """
+    import numpy as np
+    from yolo_masks import print_masks
+    if not detections:
+        return ""
+    numbers, scores, arrays = zip(*detections)
+    masks = hullslam_module().Masks(np.stack(arrays), list(map(str, numbers)), np.clip(scores, 0.0, 1.0))
+    size = np.array(arrays[0].shape[::-1])
+    return print_masks([(number, np.clip(parts[0] / size, 0.0, 1.0), score) for number, parts, score
+                        in zip(masks.classes, masks.outlines, masks.scores)
+                        if area_of(parts[0]) >= MIN_AREA], digits=6)
 
 
 # ---- networks
@@ -175,8 +146,8 @@ def detect(networks, images, index, arguments):
     size = tuple(found.orig_img.shape[:2])
     wrong = [tuple(array.shape) for array in arrays if array is not None and array.shape != size]
     if wrong or len(arrays) != len(boxes):
-        raise InputError(f"{images.files[index]}: the networks gave {len(arrays)} masks of {wrong or size} pixels "
-                         f"for {len(boxes)} boxes in an image of {size} pixels")
+        raise InputError(f"{images.files[index]}: the networks gave {len(arrays)} masks of {wrong or size} "
+                         f"pixels for {len(boxes)} boxes in an image of {size} pixels")
     return [(int(number), float(score), turn_back(array > 0.5, orientation)) for number, score, array in
             zip(as_array(boxes.cls), as_array(boxes.conf), arrays) if array is not None]
 
@@ -197,22 +168,18 @@ def refine(refiner, image, boxes, options):
 # ---- the work
 
 
-def describe(arguments):
-    return {"model": arguments.model, "refine": arguments.refine,
-            "confidence": arguments.confidence}
-
-
 def prepare(out, arguments):
     """Makes the folder. Refuses one with masks of other networks, because they would be mixed."""
     out.mkdir(parents=True, exist_ok=True)
     path = out / SETTINGS
+    made_by = {key: getattr(arguments, key) for key in ("model", "refine", "confidence")}
     if path.exists():
-        if (former := read_json(path)) != describe(arguments):
+        if (former := read_json(path)) != made_by:
             raise InputError(f"{out}: has masks that were made with {json.dumps(former)}; choose "
                              "another --out, or delete them")
     elif any(out.iterdir()):
         raise InputError(f"{out}: contains files, but none of this script; choose another --out")
-    write(path, json.dumps(describe(arguments)) + "\n")
+    write(path, json.dumps(made_by) + "\n")
 
 
 def show(done, count, begin, at_begin):
@@ -224,16 +191,12 @@ def show(done, count, begin, at_begin):
               end="" if is_terminal and done < count else "\n", file=sys.stderr, flush=True)
 
 
-def default_folder(sequence):
-    return sequence.with_name(sequence.stem + "_masks") if sequence.is_file() else sequence / "masks"
-
-
 def make_masks(arguments):
-    images = open_images(arguments.sequence)
-    count = len(images)
-    out = arguments.out or default_folder(arguments.sequence)
+    images, sequence = open_images(arguments.sequence), arguments.sequence
+    count, networks, new = len(images), None, 0
+    out = arguments.out or (sequence.with_name(sequence.stem + "_masks") if sequence.is_file() else
+                            sequence / "masks")
     prepare(out, arguments)
-    networks, new = None, 0
     begin = time.monotonic()
     for done, name in enumerate(images.names, 1):
         path = out / f"{name}.txt"
@@ -251,28 +214,19 @@ def make_masks(arguments):
     print(f"{out}: masks of {count} images, {new} of them new")
 
 
-def parse_arguments(words):
+def main(words=None):
     parser = parser_of(__doc__)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     parser.add_argument("--out", type=pathlib.Path,
                         help="folder for masks (default: SEQUENCE/masks, or VIDEO_masks)")
-    parser.add_argument("--model", default="yolov8x-seg.pt",
-                        help="weights of YOLO (default yolov8x-seg.pt)")
+    parser.add_argument("--model", default="yolov8x-seg.pt", help="weights of YOLO (default yolov8x-seg.pt)")
     parser.add_argument("--refine", default="sam_b.pt", metavar="MODEL",
                         help="weights of SAM, or none (default sam_b.pt)")
-    parser.add_argument("--confidence", type=float, default=0.25, metavar="C",
+    parser.add_argument("--confidence", type=number(0.0, 1.0), default=0.25, metavar="C",
                         help="least confidence of a detection (default 0.25)")
     parser.add_argument("--device", help="where the networks run, such as cpu or 0 (default: theirs)")
     parser.add_argument("--quiet", action="store_true", help="no progress")
-    arguments = parser.parse_args(words)
-    if not 0.0 <= arguments.confidence <= 1.0:
-        parser.error(f"--confidence is {arguments.confidence}, expected a number from 0 to 1")
-    return arguments
-
-
-def main(words=None):
-    arguments = parse_arguments(words)
-    return exit_code(make_masks, arguments)
+    return exit_code(make_masks, parser.parse_args(words))
 
 
 if __name__ == "__main__":

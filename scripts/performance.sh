@@ -12,11 +12,8 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
+help_if_asked "$@"
 case "${1:-}" in
-  -h | --help)
-    print_help
-    exit 0
-    ;;
   "") usage_error "SEQUENCE is missing" ;;
   -*) usage_error "unknown option \"$1\"" ;;
 esac

@@ -21,6 +21,7 @@ usage or input, or the tests fail without a defect.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import pathlib
@@ -31,45 +32,52 @@ import subprocess
 import sys
 import tempfile
 
-from support import InputError, parser_of
+from support import call, exit_code, InputError, number, parser_of, read_text
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 MARK = "copy_of_plant_defects"  # a file in the copy
-KEYS = {"name", "file", "find", "replace", "test"}
+NEEDED = {"name", "file", "find", "replace"}
 
 
 def read_defects(path, names):
     """The entries of the list; only those with the given names, if there are any."""
     try:
-        entries = json.loads(path.read_text(encoding="utf-8"))
+        entries = json.loads(read_text(path))
         for entry in entries:
-            strange = [key for key in entry if key not in KEYS or not isinstance(entry[key], str)]
-            if strange or not {"name", "file", "find", "replace"} <= set(entry):
+            has_keys = NEEDED <= entry.keys() <= NEEDED | {"test"}
+            if not has_keys or not all(isinstance(value, str) for value in entry.values()):
                 raise InputError(f"{path}: {entry.get('name', entry)}: expected texts name, file, "
                                  "find, replace, and perhaps test")
             if entry["find"] == entry["replace"] or not entry["find"]:
                 raise InputError(f"{path}: {entry['name']}: replaces nothing")
-    except (OSError, ValueError, TypeError, AttributeError) as error:
+    except (ValueError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: not a list of defects: {error}") from error
-    known = [entry["name"] for entry in entries]
-    if len(set(known)) != len(known):
+    known = {entry["name"] for entry in entries}
+    if len(known) != len(entries):
         raise InputError(f"{path}: two defects have the same name")
-    unknown = sorted(set(names) - set(known))
-    if unknown:
+    if unknown := sorted(set(names) - known):
         raise InputError(f"{path}: no defect {', '.join(unknown)}")
     return [entry for entry in entries if not names or entry["name"] in names]
 
 
+def git(top, *words):
+    """What git prints about the tree."""
+    result = call("git", *words, cwd=top)
+    if result.returncode != 0:
+        raise InputError(f"git {' '.join(words)} in {top}: {result.stderr.strip()}")
+    return result.stdout
+
+
 def seed_of_commit(top):
     """A number that follows from the commit of the tree."""
-    head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=top, check=True, capture_output=True,
-                          text=True).stdout
-    return int(head[:8], 16)
+    return int(git(top, "rev-parse", "HEAD")[:8], 16)
 
 
-def draw(entries, count, seed):
-    """`count` of the entries, in the order of the list."""
-    chosen = random.Random(seed).sample(range(len(entries)), min(count, len(entries)))
+def draw(entries, arguments):
+    """Some of the entries, in the order of the list."""
+    seed = seed_of_commit(arguments.tree) if arguments.seed is None else arguments.seed
+    chosen = random.Random(seed).sample(range(len(entries)), min(arguments.sample, len(entries)))
+    print(f"{len(chosen)} of {len(entries)} defects, --seed {seed}", flush=True)
     return [entries[i] for i in sorted(chosen)]
 
 
@@ -82,16 +90,13 @@ def command_of(entry):
 
 def sync(top, copy):
     """Makes the copy equal to the tree. Equal files are not touched, so that they stay built."""
-    if not (copy / MARK).exists():
-        if copy.exists() and any(copy.iterdir()):
-            raise InputError(f"{copy}: is not empty and no copy of this script")
-        copy.mkdir(parents=True, exist_ok=True)
-        (copy / MARK).touch()
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-                            cwd=top, check=True, capture_output=True).stdout.decode().split("\0")
+    if not (copy / MARK).exists() and copy.exists() and any(copy.iterdir()):
+        raise InputError(f"{copy}: is not empty and no copy of this script")
+    copy.mkdir(parents=True, exist_ok=True)
+    (copy / MARK).touch()
+    listed = git(top, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0")
     wanted = {name for name in listed if name and (top / name).is_file()}
-    for name in sorted(wanted):
-        source, target = top / name, copy / name
+    for source, target in ((top / name, copy / name) for name in sorted(wanted)):
         if not target.exists() or source.read_bytes() != target.read_bytes():
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, target)
@@ -109,50 +114,44 @@ class Builder:
 
     def configure(self):
         # Without the unity build, only one file is compiled for each planted defect.
-        command = ["cmake", "--preset", "release", "-DCMAKE_UNITY_BUILD=OFF"]
-        if shutil.which("ccache"):
-            command.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
-        result = self._run(command, None)
+        ccache = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+        result = self._run(["cmake", "--preset", "release", "-DCMAKE_UNITY_BUILD=OFF", *ccache])
         if result.returncode != 0:
             raise InputError(f"cmake failed in {self.copy}:\n{result.stdout[-2000:]}")
 
     def compile(self, target):
-        """Returns (success, messages)."""
-        result = self._run(["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target",
-                            target], None)
-        return result.returncode == 0, result.stdout
+        """The messages of a compilation that has failed; None if it has not."""
+        result = self._run(["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", target])
+        return None if result.returncode == 0 else result.stdout
 
     def passes(self, command):
-        program = self.build / "bin" / command[0]
         try:
-            return self._run([str(program), *command[1:]], self.seconds).returncode == 0
+            result = self._run([str(self.build / "bin" / command[0]), *command[1:]], self.seconds)
+            return result.returncode == 0
         except subprocess.TimeoutExpired:
             return False
 
-    def _run(self, command, seconds):
+    def _run(self, command, seconds=None):
         return subprocess.run(command, cwd=self.copy, stdout=subprocess.PIPE, timeout=seconds,
                               stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
 
 
-def apply_defect(text, entry):
-    """The text with the defect; None if it does not apply."""
-    if text.count(entry["find"]) != 1:
-        return None
-    return text.replace(entry["find"], entry["replace"])
+def matches_of(entry, top):
+    """The content of the file of a defect, and how often it has the text that is replaced."""
+    path = top / entry["file"]
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    return text, text.count(entry["find"])
 
 
 def try_defect(entry, builder):
     """Returns the result for a defect: "caught", "SURVIVED", or why it could not be tried."""
-    path = builder.copy / entry["file"]
-    original = path.read_text(encoding="utf-8") if path.is_file() else ""
-    changed = apply_defect(original, entry)
-    if changed is None:
-        return f"does not apply ({original.count(entry['find'])} matches)"
+    path, (original, matches) = builder.copy / entry["file"], matches_of(entry, builder.copy)
+    if matches != 1:
+        return f"does not apply ({matches} matches)"
     command = command_of(entry)
     try:
-        path.write_text(changed, encoding="utf-8")
-        built, messages = builder.compile(command[0])
-        if not built:
+        path.write_text(original.replace(entry["find"], entry["replace"]), encoding="utf-8")
+        if (messages := builder.compile(command[0])) is not None:
             faults = [line for line in messages.splitlines() if "error:" in line]
             return f"does not compile: {faults[0] if faults else messages[-300:]}"
         return "SURVIVED" if builder.passes(command) else "caught"
@@ -160,37 +159,47 @@ def try_defect(entry, builder):
         path.write_text(original, encoding="utf-8")
 
 
-def check_applies(entries, top):
-    """The defects that do not apply to the tree, one line per defect."""
-    for entry in entries:
-        path = top / entry["file"]
-        matches = path.read_text(encoding="utf-8").count(entry["find"]) if path.is_file() else 0
-        if matches != 1:
-            yield f"{entry['name']}: does not apply ({matches} matches in {entry['file']})"
+def check(entries, top):
+    """Prints the defects that do not apply to the tree. Returns 1 if there are any."""
+    faults = [f"{entry['name']}: does not apply ({matches} matches in {entry['file']})"
+              for entry in entries if (matches := matches_of(entry, top)[1]) != 1]
+    print("\n".join([*faults, f"{len(entries)} defects, {len(faults)} do not apply"]))
+    return 1 if faults else 0
 
 
-def run(entries, builder):
-    """Tries all defects and prints the results. Returns the number that were not caught."""
+def try_all(entries, builder):
+    """Tries all defects and prints the results. Returns 1 if one was not caught."""
+    builder.configure()
     for command in sorted({tuple(command_of(entry)) for entry in entries}):
-        built, messages = builder.compile(command[0])
-        if not built:
+        if (messages := builder.compile(command[0])) is not None:
             raise InputError(f"{command[0]} does not compile:\n{messages[-2000:]}")
-        if not builder.passes(list(command)):
+        if not builder.passes(command):
             raise InputError(f"`{shlex.join(command)}` fails without a defect")
         print(f"{shlex.join(command)}: passes without a defect", flush=True)
-    outcomes = []
+    missed = []
     for entry in entries:
         outcome = try_defect(entry, builder)
-        outcomes.append((entry, outcome))
         print(f"{entry['name']:<40} {outcome}", flush=True)
-    missed = [(entry, outcome) for entry, outcome in outcomes if outcome != "caught"]
-    print(f"{len(outcomes)} defects, {len(outcomes) - len(missed)} caught")
-    for entry, outcome in missed:
-        print(f"  {entry['file']}: {entry['name']}: {outcome}")
-    return len(missed)
+        if outcome != "caught":
+            missed.append(f"  {entry['file']}: {entry['name']}: {outcome}")
+    print("\n".join([f"{len(entries)} defects, {len(entries) - len(missed)} caught", *missed]))
+    return 1 if missed else 0
 
 
-def main(words=None):
+def plant(arguments):
+    entries = read_defects(arguments.list, arguments.names)
+    if arguments.check:
+        return check(entries, arguments.tree)
+    if arguments.sample is not None:
+        entries = draw(entries, arguments)
+    with contextlib.ExitStack() as stack:
+        copy = arguments.work or pathlib.Path(stack.enter_context(
+            tempfile.TemporaryDirectory(prefix="plant_defects_"))) / "copy"
+        sync(arguments.tree, copy.resolve())
+        return try_all(entries, Builder(copy.resolve(), arguments.jobs, arguments.timeout))
+
+
+def main():
     parser = parser_of(__doc__)
     parser.add_argument("names", metavar="NAME", nargs="*", help="defects to plant (default: all)")
     parser.add_argument("--list", type=pathlib.Path, metavar="FILE",
@@ -198,9 +207,8 @@ def main(words=None):
                         help="list of defects (default: scripts/defects.json)")
     parser.add_argument("--check", action="store_true",
                         help="build nothing, only check that all defects apply to the tree")
-    parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
-                        help="folder for the copy, which is kept")
-    parser.add_argument("--sample", type=int, metavar="N",
+    parser.add_argument("--work", type=pathlib.Path, metavar="DIR", help="folder for the copy, which is kept")
+    parser.add_argument("--sample", type=number(1, kind=int), metavar="N",
                         help="plant only N defects, drawn at random (default: all)")
     parser.add_argument("--seed", type=int, metavar="SEED",
                         help="of --sample (default: a number that follows from the commit)")
@@ -209,34 +217,7 @@ def main(words=None):
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S",
                         help="longest time of a test program (default 600)")
     parser.add_argument("--tree", type=pathlib.Path, default=TOP, help=argparse.SUPPRESS)
-    arguments = parser.parse_args(words)
-    temporary = None
-    try:
-        entries = read_defects(arguments.list, arguments.names)
-        if arguments.check:
-            faults = list(check_applies(entries, arguments.tree))
-            print("\n".join([*faults, f"{len(entries)} defects, {len(faults)} do not apply"]))
-            return 1 if faults else 0
-        if arguments.sample is not None:
-            if arguments.sample < 1:
-                raise InputError(f"--sample: {arguments.sample}: expected at least 1")
-            seed = seed_of_commit(arguments.tree) if arguments.seed is None else arguments.seed
-            listed = len(entries)
-            entries = draw(entries, arguments.sample, seed)
-            print(f"{len(entries)} of {listed} defects, --seed {seed}", flush=True)
-        if arguments.work is None:
-            temporary = tempfile.TemporaryDirectory(prefix="plant_defects_")
-        copy = arguments.work.resolve() if arguments.work else pathlib.Path(temporary.name) / "copy"
-        sync(arguments.tree, copy)
-        builder = Builder(copy, arguments.jobs, arguments.timeout)
-        builder.configure()
-        return 1 if run(entries, builder) else 0
-    except (InputError, OSError, subprocess.CalledProcessError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    finally:
-        if temporary is not None:
-            temporary.cleanup()
+    return exit_code(plant, parser.parse_args(), failure=2)
 
 
 if __name__ == "__main__":

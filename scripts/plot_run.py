@@ -17,11 +17,11 @@ import io
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
-from support import exit_code, InputError, one_line, parser_of, programs_folder, read_json, require, value_at
+from support import (call, exit_code, InputError, number, one_line, parser_of, programs_folder,
+                     read_json, require, value_at)
 
 require("numpy", "matplotlib")
 import matplotlib  # noqa: E402
@@ -38,12 +38,12 @@ NEEDED = tuple(f"{part} left out" for part in ("trajectory", "keyframes", "landm
 
 def link_run(arguments, folder):
     """Makes a run in `folder` from links, with the given ground truth and sequence."""
-    for path in arguments.run_dir.iterdir():
-        if path.name not in ("summary.json", "groundtruth.txt", "report.html"):
-            (folder / path.name).symlink_to(path.resolve())
-    truth = arguments.groundtruth or arguments.run_dir / "groundtruth.txt"
-    if truth.exists():
-        (folder / "groundtruth.txt").symlink_to(truth.resolve())
+    files = {path.name: path for path in arguments.run_dir.iterdir()
+             if path.name not in ("summary.json", "report.html")}
+    if arguments.groundtruth:
+        files["groundtruth.txt"] = arguments.groundtruth
+    for name, path in files.items():
+        (folder / name).symlink_to(path.resolve())
     summary = read_json(arguments.run_dir / "summary.json")
     if arguments.sequence:
         summary.setdefault("provenance", {})["sequence"] = str(arguments.sequence.resolve())
@@ -55,8 +55,7 @@ def make_report(run_dir, page):
     if not program.is_file():
         raise InputError(f"{program}: no such program; build it (cmake --build --preset release "
                          "--target hullslam_program), or run with --report")
-    command = [program, "view", run_dir, "--report", "--output", page, "--quiet"]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    result = call(program, "view", run_dir, "--report", "--output", page, "--quiet")
     if result.returncode != 0:
         raise InputError(one_line(result.stderr.strip().removeprefix("error: ") or "no message", 400))
 
@@ -81,10 +80,8 @@ def read_report(arguments):
 
 def rotation(quaternion):
     """The matrix of a quaternion qx, qy, qz, qw."""
-    x, y, z, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    *v, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
+    return (2 * w * w - 1) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(np.eye(3), v)
 
 
 class Run:
@@ -264,8 +261,6 @@ def print_figures(run):
 
 
 def plot_run(arguments):
-    if arguments.overlay < 0:
-        raise InputError(f"--overlay is {arguments.overlay}, expected 0 or more keyframes")
     data = read_report(arguments)
     for note in data["run"]["notes"]:
         is_wanted = arguments.groundtruth and note.startswith("ground truth left out")
@@ -289,7 +284,8 @@ def main(words=None):
                         help="true trajectory in TUM's format (default: that of the sequence)")
     parser.add_argument("--no-groundtruth", action="store_true", help="draw the run alone")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="(default: RUN_DIR)")
-    parser.add_argument("--overlay", type=int, default=0, metavar="N", help="draw N keyframes too")
+    parser.add_argument("--overlay", type=number(0, kind=int), default=0, metavar="N",
+                        help="draw N keyframes too")
     parser.add_argument("--sequence", type=pathlib.Path, metavar="PATH",
                         help="the sequence of the run (default: the one that summary.json names)")
     return exit_code(plot_run, parser.parse_args(words), failure=2)

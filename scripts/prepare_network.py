@@ -17,7 +17,7 @@ import os
 import pathlib
 import sys
 
-from support import exit_code, InputError, one_line, parser_of, require, write
+from support import exit_code, InputError, one_line, parser_of, reachable, require, write
 
 STRIDES = (8, 16, 32)  # px of the input per cell of a map that YOLO decodes
 DEFAULT_SIZE = 640  # px, where the file leaves the size of the input open
@@ -116,35 +116,21 @@ class Graph:
         return next((stride for stride in STRIDES
                      if len(shape) == 4 and [side * stride for side in shape[2:]] == self.size), None)
 
-    def operations_after(self, name):
-        """The kinds of all operations that a tensor has an effect on."""
-        kinds, seen, todo = set(), set(), [name]
-        while todo:
-            for node in self.users.get(todo.pop(), []):
-                if node.output[0] not in seen:
-                    seen.add(node.output[0])
-                    kinds.add(node.op_type)
-                    todo.extend(node.output)
-        return kinds
+    def inputs(self, name):
+        """The tensors that a tensor is made from."""
+        return self.maker[name].input if name in self.maker else []
 
     def maps_before(self, name):
         """The last maps of cells on all ways to a tensor: what the decoding begins with."""
-        maps, seen, todo = [], set(), [name]
-        while todo:
-            tensor = todo.pop()
-            if tensor in seen or tensor not in self.maker:
-                continue
-            seen.add(tensor)
-            if self.stride(tensor):
-                maps.append(tensor)
-            else:
-                todo.extend(self.maker[tensor].input)
-        return maps
+        before = reachable([name], lambda tensor: [] if self.stride(tensor) else self.inputs(tensor))
+        return [tensor for tensor in before if tensor in self.maker and self.stride(tensor)]
 
     def part(self, name):
         """The place of a map in a cell: first the sides of the box, whose distribution goes through a
         softmax, then the classes, whose scores go through a sigmoid, then the coefficients."""
-        kinds = self.operations_after(name)
+        after = reachable([name], lambda tensor: [output for node in self.users.get(tensor, [])
+                                                  for output in node.output])
+        kinds = {node.op_type for tensor in after for node in self.users.get(tensor, [])}
         return 0 if "Softmax" in kinds else 1 if "Sigmoid" in kinds else 2
 
 
@@ -160,8 +146,7 @@ def cut(path, model, image):
     for stride in STRIDES:
         parts = sorted((name for name in maps if graph.stride(name) == stride), key=graph.part)
         if not parts:
-            shapes = ", ".join(f"{value.name} {graph.shapes.get(value.name)}"
-                               for value in model.graph.output)
+            shapes = ", ".join(f"{value.name} {graph.shapes.get(value.name)}" for value in model.graph.output)
             raise InputError(f"{path}: no map of cells of {stride} px leads to the outputs ({shapes}), "
                              "expected YOLOv8-seg, YOLO11-seg or YOLOv5-seg, exported with dynamic=False")
         if len({graph.part(name) for name in parts}) < len(parts):
@@ -174,27 +159,12 @@ def cut(path, model, image):
             graph.maker[name] = model.graph.node[-1]
             graph.shapes[name] = graph.shapes[parts[0]][:]
             graph.shapes[name][1] = sum(graph.shapes[part][1] for part in parts)
-        heads.append(helper.make_tensor_value_info(name, TensorProto.FLOAT,
-                                                        graph.shapes[name]))
-    keep(model, graph, [*heads, *prototypes])
-
-
-def keep(model, graph, outputs):
-    """Leaves only what these outputs need."""
-    outputs = [type(value).FromString(value.SerializeToString()) for value in outputs]
-    needed, todo = set(), [value.name for value in outputs]
-    while todo:
-        name = todo.pop()
-        if name not in needed:
-            needed.add(name)
-            todo.extend(graph.maker[name].input if name in graph.maker else [])
-    nodes = [node for node in model.graph.node if needed & set(node.output)]
-    weights = [tensor for tensor in model.graph.initializer if tensor.name in needed]
-    for field, values in (("node", nodes), ("initializer", weights), ("output", outputs)):
-        copies = [type(value).FromString(value.SerializeToString()) for value in values]
-        del getattr(model.graph, field)[:]
-        getattr(model.graph, field).extend(copies)
-    del model.graph.value_info[:]
+        heads.append(helper.make_tensor_value_info(name, TensorProto.FLOAT, graph.shapes[name]))
+    outputs = [*heads, *prototypes]
+    needed = set(reachable([value.name for value in outputs], graph.inputs))
+    model.graph.CopyFrom(helper.make_graph(
+        [node for node in model.graph.node if needed & set(node.output)], model.graph.name,
+        model.graph.input, outputs, [tensor for tensor in model.graph.initializer if tensor.name in needed]))
 
 
 # ---- the result

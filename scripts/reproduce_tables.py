@@ -26,20 +26,19 @@ import pathlib
 import shutil
 import sys
 
-from support import exit_code, InputError, parser_of, programs_folder, read_json, require, write
+from support import exit_code, InputError, number, parser_of, read_json, require, SCRIPTS, write
 
-require("numpy", "yaml")
+require("jsonschema", "numpy", "yaml")
 from paper_tables.definitions import MODES, read_definitions  # noqa: E402
-from paper_tables.engine import (DIGITS, PLAN, describe_dry_run, make_all, read_results,  # noqa: E402
-                                 result_file, stop_by_signals, table_lock)
+from paper_tables.engine import (DIGITS, at_work, describe_dry_run, make_all, read_results,  # noqa: E402
+                                 result_file, stop_by_signals)
 from paper_tables.files import latex, markdown, markdown_lines  # noqa: E402
-from paper_tables.plan import Request, Tools, chosen, make_plan  # noqa: E402
+from paper_tables.plan import Request, Tools, add_work_options, chosen, make_plan  # noqa: E402
 from paper_tables.sequences import (find_sequences, in_order, read_list, read_sequence,  # noqa: E402
                                     read_suite, suite_file)
 from paper_tables.tables import Report, compare_reports, read_report  # noqa: E402
 from paper_tables.text import comparison_grid  # noqa: E402
 
-SCRIPTS = pathlib.Path(__file__).resolve().parent
 OWN = SCRIPTS / "paper_tables"
 QUICK_SEQUENCES, QUICK_FRAMES = 2, 40
 
@@ -53,21 +52,14 @@ def recorded_sequences(arguments, definitions, config):
         texts += map(str, found)
         for path in others:
             print(f"note: {path} is no sequence and is left out", file=sys.stderr)
-    folders = dict.fromkeys(texts)
     return [read_sequence(text, arguments.masks, definitions.paper_sequences, config)
-            for text in folders]
+            for text in dict.fromkeys(texts)]
 
 
 def select(sequences, only):
     """The sequences that --only names, by their own name or that of the paper."""
-    if only is None:
-        return sequences
-    names = {name.strip() for name in only.split(",")}
     known = [name for sequence in sequences for name in (sequence.name, sequence.paper) if name]
-    for name in sorted(names):
-        if name not in known:
-            raise InputError(f"--only: '{name}' is unknown, expected some of: "
-                             f"{', '.join(dict.fromkeys(known))}")
+    names = set(chosen(only, dict.fromkeys(known), "--only")) if only is not None else set(known)
     return [sequence for sequence in sequences if {sequence.name, sequence.paper} & names]
 
 
@@ -88,7 +80,7 @@ def quick_table(table, known):
     rows = tuple(row for row in table.rows if row.variant == table.baseline or row is other)
     by_kind = {bool(known[name].options): name for name in reversed(table.degradations)}
     degradations = tuple(name for name in table.degradations if name in by_kind.values())
-    return dataclasses.replace(table, rows=rows, degradations=degradations)
+    return table.with_changes(rows=rows, degradations=degradations)
 
 
 def suite_cache(arguments, tools):
@@ -100,7 +92,7 @@ def suite_cache(arguments, tools):
 def make_request(arguments, tools, suite):
     definitions = read_definitions(arguments.definitions)
     if arguments.quick:
-        definitions = dataclasses.replace(definitions, tables={
+        definitions = definitions.with_changes(tables={
             name: quick_table(table, definitions.degradations)
             for name, table in definitions.tables.items()})
     frames = arguments.frames or (QUICK_FRAMES if arguments.quick else None)
@@ -128,14 +120,12 @@ def print_plan(request, plan, cells, out):
               f"masks {sequence.masks or 'none'}")
     used = {}
     for (table, mode, _), found in cells.items():
-        used.setdefault((table, mode), set()).update(
-            name for cell in found for name in cell["runs"].values())
+        used.setdefault((table, mode), set()).update(name for cell in found for name in cell["runs"].values())
     for (table, mode), names in used.items():
         print(f"table {table}, {mode}: {len(names)} runs")
     done = {name for name, run in plan["runs"].items() if (out / result_file(name, run)).is_file()}
     frames = sum(run["frames"] for name, run in plan["runs"].items() if name not in done)
-    print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to "
-          "process")
+    print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to process")
     for name in plan["runs"]:
         print(f"  {'done' if name in done else 'to do'}  {name}")
 
@@ -175,8 +165,7 @@ def reproduce(arguments):
     paper = read_json(OWN / "paper_tables.json")
     if arguments.suite and not arguments.quiet and not suite_cache(arguments, tools).is_file():
         print("asking make_synthetic for its sequences", file=sys.stderr, flush=True)
-    suite = arguments.suite and suite_file(tools.path("make_synthetic"),
-                                           suite_cache(arguments, tools))
+    suite = arguments.suite and suite_file(tools.path("make_synthetic"), suite_cache(arguments, tools))
     request = make_request(arguments, tools, suite)
     plan, cells = make_plan(request, tools)
     if not plan["runs"]:
@@ -184,11 +173,9 @@ def reproduce(arguments):
     if arguments.list:
         print_plan(request, plan, cells, out)
         return
-    out.mkdir(parents=True, exist_ok=True)
-    if suite:
-        write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
-    with table_lock(out):
-        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+    with at_work(plan, out):
+        if suite:
+            write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
         if arguments.retry_failed:
             forget_failures(plan, out)
         if arguments.dry_run:
@@ -225,38 +212,24 @@ def parse_arguments(words):
     runs.add_argument("--out", type=pathlib.Path, required=True, help="folder for runs and tables")
     runs.add_argument("--tables", metavar="I,II,...", help="only some of the tables")
     runs.add_argument("--modes", metavar="rgbd,mono", help="only one of the modes")
-    runs.add_argument("--seeds", type=int, metavar="N", help="runs per cell (default 3)")
-    runs.add_argument("--first-seed", type=int, default=0, metavar="N", help="(default 0)")
-    runs.add_argument("--frames", type=int, metavar="N", help="only the first N images")
+    runs.add_argument("--seeds", type=number(1, kind=int), metavar="N", help="runs per cell (default 3)")
+    runs.add_argument("--first-seed", type=number(0, kind=int), default=0, metavar="N", help="(default 0)")
+    runs.add_argument("--frames", type=number(2, kind=int), metavar="N", help="only the first N images")
     runs.add_argument("--quick", action="store_true",
                       help=f"see whether everything works: {QUICK_SEQUENCES} sequences, one seed, "
                            f"{QUICK_FRAMES} images, two rows of each table and two degradations")
-    runs.add_argument("--timeout", type=float, default=3600.0, metavar="S",
-                      help="longest time of a run (default 3600 s)")
     runs.add_argument("--definitions", type=pathlib.Path, default=OWN / "tables.yaml",
                       metavar="FILE", help="what is run and what the tables show (default: "
                       "paper_tables/tables.yaml beside this script)")
-    runs.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
-                      help="(default: those of this installation or of build/release/bin)")
     work = parser.add_argument_group("work")
-    work.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
+    add_work_options(work, timeout=3600.0)
     work.add_argument("--profile", metavar="NAME", help="profile of Snakemake for a cluster: slurm, "
                       "or a folder with config.yaml")
-    work.add_argument("--list", action="store_true", help="print what would be run, and end")
     work.add_argument("--dry-run", action="store_true", help="print Snakemake's jobs, and end")
-    work.add_argument("--so-far", action="store_true",
-                      help="run nothing; tables of the runs that are done")
     work.add_argument("--retry-failed", action="store_true", help="repeat runs that have failed")
     work.add_argument("--compare", type=pathlib.Path, metavar="OLD.json",
                       help="compare with an older tables.json")
-    work.add_argument("--quiet", action="store_true", help="print only errors")
     arguments = parser.parse_args(words)
-    for name, low in (("seeds", 1), ("first_seed", 0), ("frames", 2), ("jobs", 1)):
-        value = getattr(arguments, name)
-        if value is not None and value < low:
-            parser.error(f"--{name.replace('_', '-')} is {value}, expected {low} or more")
-    if not 0.0 < arguments.timeout < 1e9:
-        parser.error("--timeout must be a number of seconds")
     if not (arguments.suite or arguments.data or arguments.sequence or arguments.sequences):
         parser.error("no sequences; give --suite synthetic, --data, --sequence or --sequences")
     return arguments

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs the poses of a run with the true ones and aligns the two trajectories."""
+"""Pairs stamps, such as those of the poses of a run and the true ones, and aligns trajectories."""
 
 import numpy as np
 
-MAX_DIFFERENCE = 0.02  # s, between the stamps of an estimated pose and a true one
+MAX_DIFFERENCE = 0.02  # s, between stamps of a pair: estimated and true pose, or image and depth
 LEAST_POSES = 3  # for an alignment
 STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 triples, and no triple of
 #              50 is right with a probability of (7/8)^50 = 0.1 %
@@ -12,12 +12,14 @@ STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 
 def pair(stamps, truth_stamps):
     """Pairs of indices (k x 2) of stamps that differ by less than MAX_DIFFERENCE.
 
-    Each stamp is in one pair at most; the pair with the smallest difference is taken first.
+    Each stamp is in one pair at most; the pair with the smallest difference is taken first, as in TUM's
+    associate.py.
     """
-    begin = np.searchsorted(truth_stamps, stamps - MAX_DIFFERENCE)
-    end = np.searchsorted(truth_stamps, stamps + MAX_DIFFERENCE, side="right")
+    order = np.argsort(truth_stamps, kind="stable")
+    begin = np.searchsorted(truth_stamps, stamps - MAX_DIFFERENCE, sorter=order)
+    end = np.searchsorted(truth_stamps, stamps + MAX_DIFFERENCE, side="right", sorter=order)
     candidates = sorted((abs(stamp - truth_stamps[j]), i, j) for i, stamp in enumerate(stamps)
-                        for j in range(begin[i], end[i]))
+                        for j in order[begin[i]:end[i]])
     used_i, used_j, pairs = set(), set(), []
     for difference, i, j in candidates:
         if difference < MAX_DIFFERENCE and i not in used_i and j not in used_j:

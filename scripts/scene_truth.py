@@ -10,29 +10,25 @@ object comes first. docs/scene.md explains how the figures are counted.
 Exit codes: 0 done, 2 bad usage or input.
 """
 
+import collections
 import json
+import math
 import pathlib
-import subprocess
 import sys
 
-from support import exit_code, InputError, parser_of, programs_folder, read_json
+from support import call, exit_code, InputError, parser_of, programs_folder, read_json
 
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
 
 
-def member(path, value, key):
-    if key not in value:
-        raise InputError(f"{path}: has no {key}")
-    return value[key]
-
-
-def size_of(truth):
-    return 2.0 * sum(truth["half_extents"]) / 3.0
-
-
-def distance(a, b):
-    return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
+def read_object(path, *keys):
+    """The JSON object in a file, which must have these keys."""
+    content = read_json(path)
+    for key in keys:
+        if key not in content:
+            raise InputError(f"{path}: has no {key}")
+    return content
 
 
 def match(scene, truths):
@@ -41,48 +37,43 @@ def match(scene, truths):
     the nearest counts."""
     best = {}
     for mapped in scene["objects"]:
-        shares = [(distance(mapped["centre"], truth["world_from_object"][:3]) / size_of(truth),
-                   truth["id"]) for truth in truths]
+        shares = [(math.dist(mapped["centre"], truth["world_from_object"][:3])
+                   / (2.0 * sum(truth["half_extents"]) / 3.0), truth["id"]) for truth in truths]
         share, truth = min(shares, default=(1.0, -1))
         if share <= NEAREST and (truth not in best or share < best[truth][0]):
             best[truth] = (share, mapped["id"])
     return {mapped: truth for truth, (_, mapped) in best.items()}
 
 
-def supports_of_surfaces(scene, matched, true_support):
-    """The true support of each surface: the one of most of its objects."""
-    supports = []
-    for surface in scene["surfaces"]:
-        votes = [true_support[matched[i]] for i in surface["objects"]
-                 if i in matched and matched[i] in true_support]
-        supports.append(max(sorted(set(votes)), key=votes.count, default=None))
-    return supports
+def true_relations(truth, known):
+    """The true relations between known objects, as a set of (relation, subject, object), and the support
+    of each object. A support is the text "support 2"."""
+    heights = [support["height"] for support in truth["supports"]]
+    # The floors of all rooms are one floor, which is the first support.
+    names = [f"support {heights.index(height) if height == 0.0 else i}" for i, height in enumerate(heights)]
+    relations, supports = set(), {}
+    for entry in truth["relations"]:
+        if "support" in entry:
+            supports[entry["subject"]] = names[entry["support"]]
+        other = entry["object"] if "object" in entry else names[entry["support"]]
+        if entry["subject"] in known and ("support" in entry or other in known):
+            relations.add((entry["relation"], entry["subject"], other))
+    return relations, supports
 
 
 def compare(scene, truth, matched):
-    """The found and the true relations between matched objects, as sets of (relation, subject,
-    object). A support is the text "support 2"."""
-    heights = [support["height"] for support in truth["supports"]]
-    # The floors of all rooms are one floor, which is the first support.
-    first = [heights.index(height) if height == 0.0 else i for i, height in enumerate(heights)]
-    true_support = {entry["subject"]: first[entry["support"]] for entry in truth["relations"]
-                    if "support" in entry}
-    known = set(matched.values())
-    true = set()
-    for entry in truth["relations"]:
-        other = entry["object"] if "object" in entry else f"support {first[entry['support']]}"
-        if entry["subject"] in known and ("support" in entry or other in known):
-            true.add((entry["relation"], entry["subject"], other))
+    """The found and the true relations between matched objects, as sets of (relation, subject, object)."""
+    true, supports = true_relations(truth, set(matched.values()))
     found = set()
     for entry in scene["relations"]:
         subject, other = matched.get(entry["subject"]), matched.get(entry["object"])
         if entry["relation"] in RELATIONS and subject is not None and other is not None:
             found.add((entry["relation"], subject, other))
-    for surface, support in zip(scene["surfaces"],
-                                supports_of_surfaces(scene, matched, true_support)):
-        for mapped in surface["objects"]:
-            if mapped in matched:
-                found.add(("on", matched[mapped], f"support {support}"))
+    for surface in scene["surfaces"]:  # its true support is the one of most of its objects
+        objects = [matched[mapped] for mapped in surface["objects"] if mapped in matched]
+        votes = [supports[i] for i in objects if i in supports]
+        support = max(sorted(set(votes)), key=votes.count, default=None)
+        found |= {("on", i, support) for i in objects}
     return found, true
 
 
@@ -90,12 +81,12 @@ def figure(part, whole):
     return f"{part / whole:.3f}" if whole else "-"
 
 
-def print_counts(name, counts, mapped, objects):
-    cells = []
+def print_counts(name, counts):
+    cells = [f"{counts['mapped']} of {counts['objects']}"]
     for relation in RELATIONS:
-        right, found, true = counts[relation]
+        right, found, true = (counts[relation, kind] for kind in ("right", "found", "true"))
         cells.append(f"{figure(right, found)} {figure(right, true)} ({found} found, {true} true)")
-    print(f"| {name} | {mapped} of {objects} | " + " | ".join(cells) + " |")
+    print(f"| {name} | " + " | ".join(cells) + " |")
 
 
 def names_of(truth):
@@ -138,8 +129,7 @@ def make_questions(scene, truth, matched, count):
 
 
 def ask(program, run, text):
-    done = subprocess.run([program, "query", str(run), text, "--json"], capture_output=True, text=True,
-                          check=False)
+    done = call(program, "query", run, text, "--json")
     if done.returncode == 1:
         return None
     if done.returncode != 0:
@@ -147,55 +137,38 @@ def ask(program, run, text):
     return json.loads(done.stdout)["answers"][0]["object"]
 
 
-def ask_all(program, run, questions, is_listed):
-    right = 0
-    for text, expected in questions:
-        answer = ask(program, run, text)
-        right += answer == expected
-        if is_listed and answer != expected:
-            print(f"  {text}: {answer}, expected {expected}")
-    print(f"  questions: the right object comes first in {right} of {len(questions)}")
-    return right
-
-
-def measure(run, sequence, arguments, totals):
-    scene_path, truth_path = run / "scene.json", sequence / "groundtruth_objects.json"
-    scene, truth = read_json(scene_path), read_json(truth_path)
-    for key in ("objects", "relations", "surfaces"):
-        member(scene_path, scene, key)
-    member(truth_path, truth, "relations")
-    member(truth_path, truth, "supports")
-    matched = match(scene, member(truth_path, truth, "objects"))
+def measure(run, sequence, arguments):
+    """Prints the figures of a run. Returns its counts."""
+    scene = read_object(run / "scene.json", "objects", "relations", "surfaces")
+    truth = read_object(sequence / "groundtruth_objects.json", "objects", "relations", "supports")
+    matched = match(scene, truth["objects"])
     found, true = compare(scene, truth, matched)
-    counts = {}
-    for relation in RELATIONS:
-        of_kind = [{entry for entry in entries if entry[0] == relation}
-                   for entries in (found & true, found, true)]
-        counts[relation] = [len(entries) for entries in of_kind]
-        totals["relations"][relation] = [a + b for a, b in zip(totals["relations"][relation],
-                                                               counts[relation])]
-    totals["mapped"] += len(matched)
-    totals["objects"] += len(truth["objects"])
-    print_counts(run.name, counts, len(matched), len(truth["objects"]))
+    counts = collections.Counter({"mapped": len(matched), "objects": len(truth["objects"])})
+    for kind, relations in ("right", found & true), ("found", found), ("true", true):
+        counts.update((relation, kind) for relation, _, _ in relations)
+    print_counts(run.name, counts)
     if arguments.list:
         list_errors(found, true, names_of(truth))
+    for text, expected in make_questions(scene, truth, matched, arguments.questions):
+        answer = ask(arguments.program, run, text)
+        counts.update({"asked": 1, "answered": answer == expected})
+        if arguments.list and answer != expected:
+            print(f"  {text}: {answer}, expected {expected}")
     if arguments.questions:
-        questions = make_questions(scene, truth, matched, arguments.questions)
-        totals["asked"] += len(questions)
-        totals["right"] += ask_all(arguments.program, run, questions, arguments.list)
+        print(f"  questions: the right object comes first in {counts['answered']} of {counts['asked']}")
+    return counts
 
 
 def measure_all(arguments):
-    totals = {"relations": {relation: [0, 0, 0] for relation in RELATIONS},
-              "mapped": 0, "objects": 0, "asked": 0, "right": 0}
     print("| run | mapped | " + " | ".join(f"{r}: precision recall" for r in RELATIONS) + " |")
     print("|---|---|---|---|---|")
+    totals = collections.Counter()
     for run, sequence in zip(arguments.pairs[::2], arguments.pairs[1::2]):
-        measure(run, sequence, arguments, totals)
-    print_counts("all", totals["relations"], totals["mapped"], totals["objects"])
+        totals.update(measure(run, sequence, arguments))
+    print_counts("all", totals)
     if arguments.questions:
-        print(f"all questions: {totals['right']} of {totals['asked']} "
-              f"({figure(totals['right'], totals['asked'])})")
+        print(f"all questions: {totals['answered']} of {totals['asked']} "
+              f"({figure(totals['answered'], totals['asked'])})")
 
 
 def main():
@@ -203,8 +176,7 @@ def main():
     parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
                         help="the output folder of a run, and its synthetic sequence. The run must "
                         "have the world of the ground truth, as those of map-objects")
-    parser.add_argument("--questions", type=int, default=0, metavar="N",
-                        help="ask N questions per scene")
+    parser.add_argument("--questions", type=int, default=0, metavar="N", help="ask N questions per scene")
     parser.add_argument("--program", default=programs_folder() / "hullslam",
                         help="path of hullslam (default: that of this installation or of "
                              "build/release/bin)")

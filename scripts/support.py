@@ -3,11 +3,13 @@
 programs are."""
 
 import argparse
+import functools
 import hashlib
 import importlib.util
 import json
 import math
 import pathlib
+import subprocess
 import sys
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
@@ -49,6 +51,17 @@ def parser_of(doc):
     return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def number(low, high=math.inf, kind=float):
+    """The type of an argument that is a number of a range."""
+    def number_of(text):
+        value = kind(text)
+        if not low <= value <= high:
+            limits = f"from {low:g} to {high:g}" if high < math.inf else f"of {low:g} or more"
+            raise argparse.ArgumentTypeError(f"is '{text}', expected a number {limits}")
+        return value
+    return number_of
+
+
 def check_program(doc, check_tree):
     """The program of a script that checks the repository: prints the faults that check_tree(root) finds,
     one line each. Returns 1 if there are any."""
@@ -81,6 +94,22 @@ def programs_folder():
     return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
 
 
+def call(*command, **options):
+    """The result of a program, with all that it prints."""
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, **options)
+
+
+def run_program(command, log, **options):
+    """The exit code of a program, whose messages go to the file `log`."""
+    with log.open("w", encoding="utf-8") as messages:
+        try:
+            return subprocess.run([str(word) for word in command], stdout=messages, stderr=messages,
+                                  check=False, **options).returncode
+        except OSError as error:
+            raise InputError(f"cannot run {command[0]}: {error.strerror}") from error
+
+
+@functools.cache
 def hullslam_module():
     """HullSLAM's Python module: one that this Python has, else that of the build or installation."""
     built = programs_folder().parent
@@ -92,6 +121,17 @@ def hullslam_module():
                          "--build --preset release --target hullslam_python) or install it (pip install "
                          "./python)") from error
     return hullslam
+
+
+def reachable(first, following):
+    """The first things, those that following(thing) gives for them, and so on: each once."""
+    found = dict.fromkeys(first)
+    order = list(found)
+    for thing in order:  # grows while it is read
+        new = [other for other in dict.fromkeys(following(thing)) if other not in found]
+        found.update(dict.fromkeys(new))
+        order += new
+    return order
 
 
 # ---- files
@@ -152,15 +192,19 @@ def value_at(content, *keys):
     return float(content) if is_number else None
 
 
+def list_lines(path):
+    """(number, words) of each line of a text file that is neither empty nor a comment."""
+    return [(number, line.split()) for number, line in enumerate(read_text(path).splitlines(), 1)
+            if line.strip() and not line.lstrip().startswith("#")]
+
+
 def read_trajectory(path):
     """Stamps (n) and poses (n x 7, tx ty tz qx qy qz qw) of a TUM file, one pose per line."""
     import numpy as np
     rows = []
-    for count, line in enumerate(read_text(path).splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
+    for count, words in list_lines(path):
         try:
-            row = [float(word) for word in line.replace(",", " ").split()]
+            row = [float(word) for word in " ".join(words).replace(",", " ").split()]
         except ValueError:
             row = []
         if len(row) != 8 or not all(map(math.isfinite, row)):

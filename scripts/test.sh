@@ -12,11 +12,8 @@ cd "$top"
 presets=()
 selection=(--label-exclude slow)
 while [ $# -gt 0 ]; do
+  help_if_asked "$1"
   case "$1" in
-    -h | --help)
-      print_help
-      exit 0
-      ;;
     --all)
       selection=()
       shift

@@ -18,12 +18,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-case "${1:-}" in
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-esac
+help_if_asked "$@"
 
 levels=5
 work=

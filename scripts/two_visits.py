@@ -20,30 +20,27 @@ Exit codes: 0 done, 1 a run failed, 2 bad usage or input.
 
 import concurrent.futures
 import csv
-import json
+import functools
+import itertools
 import pathlib
 import re
-import subprocess
 import sys
 
-from support import exit_code, parser_of, programs_folder, read_json, SCRIPTS, Stopped
+from paper_tables.figures import ask
+from support import exit_code, number, parser_of, programs_folder, read_json, run_program, SCRIPTS, Stopped
 
 # First and last frame of each session, for a recording of 800 frames. The second sessions follow the
 # first one, overlap with it, come before it, and are short and long.
-CUTS = ("0:300,301:500", "0:300,301:799", "0:200,201:799", "0:600,601:799", "400:799,0:399",
-        "200:600,0:199")
+CUTS = ("0:300,301:500", "0:300,301:799", "0:200,201:799", "0:600,601:799", "400:799,0:399", "200:600,0:199")
 SCENES = ("desk:0", "desk:1", "desk:2", "room:0", "room:1", "room:3", "house:0")
 KINDS = ("seen_again", "moved", "gone", "not_seen", "new", "first_seen")
+PLACES, FIGURES = ("places_left", "places_taken"), ("in_truth", "reported", "right")
 
 
-def run(command, log, codes=(0,)):
-    """Runs a program and returns what it prints; its messages go to the file `log`."""
-    with log.open("w", encoding="utf-8") as messages:
-        result = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
-                                stderr=messages, text=True, check=False)
-    if result.returncode not in codes:
-        raise Stopped(f"{' '.join(map(str, command))}: exit code {result.returncode}; see {log}")
-    return result.stdout
+def run(command, log):
+    """Runs a program, whose messages go to the file `log`."""
+    if (code := run_program(command, log)) != 0:
+        raise Stopped(f"{' '.join(map(str, command))}: exit code {code}; see {log}")
 
 
 def thinned(sequence, masks, out, recall, seed):
@@ -57,70 +54,54 @@ def thinned(sequence, masks, out, recall, seed):
     return copy / "masks"
 
 
-def two_sessions(arguments, out, first, second):
-    """Runs both sessions and returns the numbers of changes. `first` and `second` are the arguments of
-    rgbd_tum."""
-    settings = [word for value in arguments.set for word in ("--set", value)]
-    common = [arguments.programs / arguments.program, *settings, "--quiet", "--overwrite"]
-    if not (out / "second" / "summary.json").exists():
-        run([common[0], *first, *common[1:], "--save-map", out / "a.map", "--output", out / "first"],
-            out / "first.log")
-        run([common[0], *second, *common[1:], "--load-map", out / "a.map", "--output",
-             out / "second"], out / "second.log")
-    objects = read_json(out / "second" / "summary.json")["objects"]
-    return {kind: int((objects["changes"] or {}).get(kind, 0)) for kind in KINDS}
-
-
-def cut_job(arguments, cut, recall, seed):
-    """One cut of the recording."""
-    out = arguments.out / f"{cut.replace(':', '-').replace(',', '_')}-{recall}-{seed}"
-    out.mkdir(parents=True, exist_ok=True)
-    masks = thinned(arguments.sequence, arguments.masks, out, recall, seed)
-    selections = []
-    for part in cut.split(","):
-        first, last = part.split(":")
-        selections.append([arguments.sequence, "--masks", masks, "--first", first, "--last", last])
-    return {"cut": cut, "recall": recall, "seed": seed, **two_sessions(arguments, out, *selections)}
-
-
-def render(arguments, name, seed, rearranged):
+def render(arguments, scene, is_rearranged):
     """The folder of a rendered scene."""
-    folder = arguments.out / f"{name}{seed}{'-rearranged' if rearranged else ''}"
+    name, seed = scene.split(":")
+    folder = arguments.out / f"{name}{seed}{'-rearranged' if is_rearranged else ''}"
     if not (folder / "groundtruth_objects.json").exists():
-        more = ["--rearranged", "1"] if rearranged else []
+        more = ["--rearranged", "1"] if is_rearranged else []
         run([arguments.programs / "make_synthetic", folder, "--scene", name, "--seed", seed, *more,
              "--quiet", "--force"], arguments.out / f"{folder.name}.log")
     return folder
 
 
-def scene_job(arguments, scene, recall, seed):
-    """One scene and its rearranged version."""
-    name, number = scene.split(":")
-    out = arguments.out / f"{name}{number}-{recall}-{seed}"
+def sessions_of(arguments, subject, recall, seed, out):
+    """The arguments of rgbd_tum for the two sessions of a cut of the recording, or of a scene and its
+    rearranged version."""
+    if arguments.kind == "still":
+        masks = thinned(arguments.sequence, arguments.masks, out, recall, seed)
+        return [[arguments.sequence, "--masks", masks, "--first", first, "--last", last]
+                for first, last in (part.split(":") for part in subject.split(","))]
+    found = []
+    for index, part in enumerate(("before", "after")):
+        (out / part).mkdir(exist_ok=True)
+        folder = render(arguments, subject, index)
+        found.append([folder, "--masks", thinned(folder, folder / "masks", out / part, recall, seed + index)])
+    return found
+
+
+def measure_one(arguments, subject, recall, seed):
+    """The row of a cut or a scene: the numbers of changes and, for a scene, those of the truth."""
+    names = {":": "-" if arguments.kind == "still" else "", ",": "_"}
+    out = arguments.out / f"{subject.translate(str.maketrans(names))}-{recall}-{seed}"
     out.mkdir(parents=True, exist_ok=True)
-    selections = []
-    for rearranged in (False, True):
-        folder = render(arguments, name, number, rearranged)
-        part = out / ("after" if rearranged else "before")
-        part.mkdir(exist_ok=True)
-        masks = thinned(folder, folder / "masks", part, recall, seed + rearranged)
-        selections.append([folder, "--masks", masks])
-    row = {"scene": scene, "recall": recall, "seed": seed, **two_sessions(arguments, out, *selections)}
-    told = run([arguments.programs / "hullslam", "evaluate", "objects", out / "second",
-                "--groundtruth", selections[1][0] / "groundtruth_objects.json", "--json"],
-               out / "evaluate.log")
-    changes = json.loads(told)["groundtruth"]["changes"]
-    for kind in ("places_left", "places_taken"):
-        row |= {f"{kind} {figure}": changes[kind][figure]
-                for figure in ("in_truth", "reported", "right")}
+    sessions = sessions_of(arguments, subject, recall, seed, out)
+    if not (out / "second" / "summary.json").exists():
+        settings = [word for value in arguments.set for word in ("--set", value)]
+        for name, session, option in zip(("first", "second"), sessions, ("--save-map", "--load-map")):
+            run([arguments.programs / arguments.program, *session, *settings, "--quiet", "--overwrite",
+                 option, out / "a.map", "--output", out / name], out / f"{name}.log")
+    changes = read_json(out / "second" / "summary.json")["objects"]["changes"] or {}
+    row = {"cut" if arguments.kind == "still" else "scene": subject, "recall": recall, "seed": seed,
+           **{kind: int(changes.get(kind, 0)) for kind in KINDS}}
+    if arguments.kind == "scenes":
+        told = ask(arguments.programs / "hullslam", "evaluate", "objects", out / "second", "--groundtruth",
+                   sessions[1][0] / "groundtruth_objects.json", "--json")
+        if not told:
+            raise Stopped(f"{out / 'second'}: cannot be compared with the true objects")
+        row |= {f"{kind} {figure}": told["groundtruth"]["changes"][kind][figure]
+                for kind in PLACES for figure in FIGURES}
     return row
-
-
-def write_rows(path, rows):
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def print_still(rows):
@@ -141,35 +122,30 @@ def print_scenes(rows):
         of_recall = [row for row in rows if row["recall"] == recall]
         print(f"masks {recall} %: in truth, reported, right")
         for row in of_recall:
-            print(f"  {row['scene']:10}", *(row[f"places_left {figure}"]
-                                            for figure in ("in_truth", "reported", "right")))
-        for kind in ("places_left", "places_taken"):
-            truth, said, right = (sum(row[f"{kind} {figure}"] for row in of_recall)
-                                  for figure in ("in_truth", "reported", "right"))
+            print(f"  {row['scene']:10}", *(row[f"places_left {figure}"] for figure in FIGURES))
+        for kind in PLACES:
+            truth, said, right = (sum(row[f"{kind} {figure}"] for row in of_recall) for figure in FIGURES)
             print(f"  {kind}: {right} of {said} reported are right ({100 * right / max(said, 1):.0f} %),"
                   f" {right} of {truth} were found ({100 * right / max(truth, 1):.0f} %)")
 
 
-def list_jobs(arguments):
-    """One function without arguments for each run."""
-    seeds = {recall: range(1) if recall == 100 else range(arguments.seeds)
-             for recall in arguments.recall}
-    pairs = [(recall, seed) for recall in arguments.recall for seed in seeds[recall]]
-    if arguments.kind == "scenes":
-        return [lambda a=(scene, *pair): scene_job(arguments, *a)
-                for scene in arguments.scene for pair in pairs]
-    return [lambda a=(cut, *pair): cut_job(arguments, *a) for cut in arguments.cut for pair in pairs]
-
-
 def measure(arguments):
     arguments.out.mkdir(parents=True, exist_ok=True)
-    if arguments.kind == "scenes":  # rendered before, since several runs need the same scene
-        for scene in arguments.scene:
-            for rearranged in (False, True):
-                render(arguments, *scene.split(":"), rearranged)
+    subjects = arguments.cut if arguments.kind == "still" else arguments.scene
+    # Rendered before, since several runs need the same scene.
+    for scene in subjects if arguments.kind == "scenes" else ():
+        for is_rearranged in (False, True):
+            render(arguments, scene, is_rearranged)
+    pairs = [(recall, seed) for recall in arguments.recall
+             for seed in range(1 if recall == 100 else arguments.seeds)]
+    jobs = [functools.partial(measure_one, arguments, subject, *pair)
+            for subject, pair in itertools.product(subjects, pairs)]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        rows = list(pool.map(lambda job: job(), list_jobs(arguments)))
-    write_rows(arguments.out / f"{arguments.kind}.csv", rows)
+        rows = list(pool.map(lambda job: job(), jobs))
+    with (arguments.out / f"{arguments.kind}.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
     (print_scenes if arguments.kind == "scenes" else print_still)(rows)
 
 
@@ -180,8 +156,8 @@ def main(words=None):
     still.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
     for kind in (still, scenes):
         kind.add_argument("out", type=pathlib.Path, metavar="OUT")
-        kind.add_argument("--recall", type=int, nargs="+", default=[100], metavar="PERCENT",
-                          help="shares of the masks that are left, in % (default 100)".replace("%", "%%"))
+        kind.add_argument("--recall", type=number(1, 100, int), nargs="+", default=[100], metavar="PERCENT",
+                          help="shares of the masks that are left, in %% (default 100)")
         kind.add_argument("--seeds", type=int, default=1, metavar="N",
                           help="runs for each recall below 100 (default 1)")
         kind.add_argument("--jobs", type=int, default=1, metavar="N",
@@ -203,8 +179,6 @@ def main(words=None):
         for cut in arguments.cut:
             if not re.fullmatch(r"\d+:\d+,\d+:\d+", cut):
                 parser.error(f"--cut is '{cut}', expected four numbers of frames as in {CUTS[0]}")
-    if not all(1 <= recall <= 100 for recall in arguments.recall):
-        parser.error("--recall must be from 1 to 100")
     return exit_code(measure, arguments)
 
 

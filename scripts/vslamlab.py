@@ -30,7 +30,7 @@ NEEDED = {
     "exp_id": "name of the run, which the names of its files begin with",
 }
 OPTIONAL = {
-    "settings_yaml": "settings of HullSLAM, and cam_mono or cam_rgbd (rgb_0), or cam_stereo (rgb_0 and rgb_1)",
+    "settings_yaml": "settings of HullSLAM, and cam_mono, cam_rgbd (rgb_0) or cam_stereo (rgb_0 and rgb_1)",
     "verbose": "0: print only errors (1)",
     "mode": "mono, rgbd or stereo, the mode of the program",
     "masks": "masks of the images, as --masks of the other programs",
@@ -133,24 +133,24 @@ class Camera:
 def read_images(path, folder, names):
     """The rows of a rgb.csv: the stamp (ns) of the first of the cameras `names`, and the path of an image
     of each."""
-    rows = list(csv.reader(read_text(path).lstrip("\ufeff").splitlines(), skipinitialspace=True))
-    header = [cell.strip() for cell in rows[0]] if rows else []
+    rows = csv.DictReader(read_text(path).lstrip("\ufeff").splitlines(), skipinitialspace=True)
+    rows.fieldnames = [cell.strip() for cell in rows.fieldnames or ()]
     columns = [column for name in names for column in (f"ts_{name} (ns)", f"path_{name}")]
     for column in columns:
-        if column not in header:
-            raise InputError(f"{path}:1: has no column '{column}', expected one of: {', '.join(header)}")
+        if column not in rows.fieldnames:
+            raise InputError(f"{path}:1: has no column '{column}', expected one of: "
+                             f"{', '.join(rows.fieldnames)}")
     images = []
-    for line, row in enumerate(rows[1:], 2):
-        if not row:
-            continue
-        if len(row) != len(header):
-            raise InputError(f"{path}:{line}: {len(row)} columns, expected those of the first line")
-        cells = [row[header.index(column)].strip() for column in columns]
+    for row in rows:
+        where = f"{path}:{rows.line_num}"
+        if None in row or None in row.values():
+            raise InputError(f"{where}: other columns than those of the first line")
+        cells = [row[column].strip() for column in columns]
         for stamp, image in zip(cells[::2], cells[1::2]):
             if not stamp.isdecimal():
-                raise InputError(f"{path}:{line}: the time stamp is '{stamp}', expected nanoseconds")
+                raise InputError(f"{where}: the time stamp is '{stamp}', expected nanoseconds")
             if not (folder / image).is_file() or any(map(str.isspace, image)):
-                raise InputError(f"{path}:{line}: {folder / image}: expected a file, with a name without blanks")
+                raise InputError(f"{where}: {folder / image}: expected a file, with a name without blanks")
         images.append((int(cells[0]), cells[1::2]))
     return images
 
@@ -162,8 +162,7 @@ def format_keyframes(path, stamps, is_mirrored):
     for stamp, pose in zip(*read_trajectory(path)):
         at = bisect.bisect_left(stamps, stamp * 1e9)
         nearest = min(stamps[max(0, at - 1):at + 1], key=lambda known: abs(known - stamp * 1e9))
-        pose = [value * sign for value, sign in zip(pose, (1.0, y, 1.0, y, 1.0, y, 1.0))]
-        lines.append(",".join([str(nearest), *(f"{value:.9f}" for value in pose)]))
+        lines.append(",".join([str(nearest), *(f"{value:.9f}" for value in pose * (1, y, 1, y, 1, y, 1))]))
     return "\n".join([*lines, ""])
 
 
@@ -193,11 +192,9 @@ class Run:
         self.images = read_images(paths["rgb_csv"], self.sequence, names)
         self.input = self.folder / f"{self.name}_hullslam_input"
         self.output = self.folder / f"{self.name}_hullslam"
-
-    def results(self):
-        """VSLAM-LAB gives the number of the run, and since 2025 it looks for a name with five digits."""
+        # VSLAM-LAB gives the number of the run, and since 2025 it looks for a name with five digits.
         names = {self.name, self.name.zfill(5) if self.name.isdecimal() else self.name}
-        return [self.folder / f"{name}_KeyFrameTrajectory.csv" for name in sorted(names)]
+        self.results = [self.folder / f"{name}_KeyFrameTrajectory.csv" for name in sorted(names)]
 
     def write_input(self):
         """Writes the lists. All images of a row get the same stamp, so that they are found as pairs."""
@@ -221,29 +218,24 @@ class Run:
         if self.mode != "stereo":
             words += ["--settings", self.input / "sensor.yaml"]
         for key in ("masks", "preset"):
-            if key in self.values:
-                words += [f"--{key}", self.values[key]]
+            words += [f"--{key}", self.values[key]] if key in self.values else []
         for override in self.overrides:
             words += ["--set", override]
         return words + ["--quiet"] * (self.values["verbose"] == "0")
-
-    def write_results(self):
-        stamps = sorted(stamp for stamp, _ in self.images)
-        text = format_keyframes(self.output / "keyframes.txt", stamps, self.cameras[0].is_mirrored)
-        for result in self.results():
-            write(result, text)
 
 
 def run(mode, words):
     require("numpy", "yaml")
     job = Run(mode, parse_values(words, mode))
     made = [folder for folder in (job.folder, *job.folder.parents) if not folder.exists()]
-    for result in job.results():
+    for result in job.results:
         result.unlink(missing_ok=True)  # a run that fails must not leave an older result
     job.write_input()
     code = subprocess.run(job.command(), check=False).returncode
     if code == 0:
-        job.write_results()
+        stamps, is_mirrored = sorted(stamp for stamp, _ in job.images), job.cameras[0].is_mirrored
+        for result in job.results:
+            write(result, format_keyframes(job.output / "keyframes.txt", stamps, is_mirrored))
     elif not job.output.exists():  # it was refused, so that nothing is left of it
         print(f"error: the sequence {job.input} was made from {job.values['rgb_csv']} and {job.calibration}",
               file=sys.stderr)

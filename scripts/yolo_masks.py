@@ -11,10 +11,8 @@ def read_masks(path):
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: is no text file; expected masks in the format yolo-seg") \
-            from error
-    return [read_mask(line.split(), f"{path}:{count}") for count, line in enumerate(lines, 1)
-            if line.strip()]
+        raise InputError(f"{path}: is no text file; expected masks in the format yolo-seg") from error
+    return [read_mask(line.split(), f"{path}:{count}") for count, line in enumerate(lines, 1) if line.strip()]
 
 
 def read_mask(words, where):
@@ -35,11 +33,12 @@ def read_mask(words, where):
     return words[0], outline, values[-1] if len(values) % 2 else None
 
 
-def print_masks(masks):
+def print_masks(masks, digits=9):
+    """The content of the file of an image with these masks."""
     lines = []
     for number, outline, score in masks:
         numbers = [*outline.flat, *([] if score is None else [score])]
-        lines.append(f"{number} " + " ".join(f"{value:.9g}" for value in numbers) + "\n")
+        lines.append(" ".join([number, *(f"{value:.{digits}g}" for value in numbers)]) + "\n")
     return "".join(lines)
 
 

@@ -20,7 +20,7 @@ import threading
 import time
 
 from paper_tables.figures import evaluate
-from support import InputError, Stopped, one_line, try_read_json, write
+from support import InputError, Stopped, call, one_line, try_read_json, write
 
 DIGITS = 16  # of a fingerprint in the name of a file
 RESULT_VERSION = 1  # of the files that runs leave; a new one repeats all runs
@@ -61,9 +61,13 @@ def locked(path, refusal=None):
         yield
 
 
-def table_lock(out):
-    return locked(out / ".lock", f"{out}: another table run is at work in this folder (process {{}}); "
-                  "wait for its end or give another --out")
+@contextlib.contextmanager
+def at_work(plan, out):
+    """Holds the lock of a folder for runs, into which the plan is written."""
+    with locked(out / ".lock", f"{out}: another table run is at work in this folder (process {{}}); "
+                               "wait for its end or give another --out"):
+        write(out / PLAN, json.dumps(plan, indent=1) + "\n")
+        yield
 
 
 # ---- programs
@@ -179,15 +183,6 @@ def folder_output(name, folder):
     return name if folder["kind"] == "degraded" else f"{name}.made-{folder['fingerprint'][:DIGITS]}"
 
 
-def keep_groundtruth(run, folder):
-    """Copies the true trajectory beside the run, because degraded sequences are removed later."""
-    source = pathlib.Path(run["groundtruth"] or folder / "out" / "groundtruth.txt")
-    target = folder / "groundtruth.txt"
-    target.unlink(missing_ok=True)
-    if source.is_file():
-        shutil.copyfile(source, target)
-
-
 def make_run(plan, name):
     """Makes a run and writes its result, unless the result is there already."""
     run = plan["runs"][name]
@@ -195,7 +190,7 @@ def make_run(plan, name):
     with locked(folder / ".lock"):
         if (try_read_json(result) or {}).get("fingerprint") == run["fingerprint"]:
             return
-        for old in [*folder.glob("result-*"), folder / ERROR]:
+        for old in [*folder.glob("result-*"), folder / ERROR, folder / "groundtruth.txt"]:
             old.unlink(missing_ok=True)
         shutil.rmtree(folder / "out", ignore_errors=True)
         code = PROGRAMS.run([*run["command"], "--output", str(folder / "out")], plan["timeout"],
@@ -206,7 +201,9 @@ def make_run(plan, name):
         provenance = summary.get("provenance") or {}
         if provenance.get("interrupted"):
             raise Stopped("the program was interrupted")
-        keep_groundtruth(run, folder)
+        truth = pathlib.Path(run["groundtruth"] or folder / "out" / "groundtruth.txt")
+        if truth.is_file():  # kept beside the run, because degraded sequences are removed later
+            shutil.copyfile(truth, folder / "groundtruth.txt")
         content = {"version": RESULT_VERSION, "fingerprint": run["fingerprint"],
                    "failure": failure_of(code, message, plan["timeout"]),
                    **{key: provenance.get(key) for key in ("preset", "git", "settings_hash")},
@@ -289,12 +286,11 @@ class Progress:
 
     def __init__(self, plan, jobs, is_quiet):
         self.is_quiet, self.count = is_quiet, len(plan["runs"])
-        self.missing = {}  # output -> weight
-        for name in jobs:
-            run, folder = plan["runs"].get(name), plan["folders"].get(name)
-            output = result_file(name, run) if run else folder_output(name, folder)
-            weight = 1.0 if run else WEIGHTS[folder["kind"]]
-            self.missing[output] = weight * ((run or folder)["frames"] or 1)
+        runs = {name: run for name, run in plan["runs"].items() if name in jobs}
+        weights = {result_file(name, run): run["frames"] for name, run in runs.items()}
+        weights |= {folder_output(name, folder): WEIGHTS[folder["kind"]] * folder["frames"]
+                    for name, folder in plan["folders"].items() if name in jobs}
+        self.missing = {output: max(weight, 1) for output, weight in weights.items()}
         self.begin, self.total = time.monotonic(), sum(self.missing.values())
         self.last, self.shown = -LINE_EVERY, ""  # so that the first line comes at once
 
@@ -354,7 +350,7 @@ def snakemake_command(jobs, profile, is_dry_run=False):
     program = shutil.which("snakemake")
     if program is None:
         raise InputError("snakemake is not installed; run scripts/setup.sh")
-    # The lock of table_lock() is enough, and that of Snakemake would outlive a kill.
+    # The lock of at_work() is enough, and that of Snakemake would outlive a kill.
     command = [program, "--snakefile", str(SNAKEFILE), "--config", f"plan={PLAN}",
                f"python={sys.executable}", "--nolock", "--rerun-incomplete", "--rerun-triggers",
                "mtime", "--scheduler", "greedy", "--nocolor"]
@@ -369,8 +365,7 @@ def snakemake_command(jobs, profile, is_dry_run=False):
 
 def describe_dry_run(out, jobs, profile):
     """What Snakemake would do."""
-    result = subprocess.run(snakemake_command(jobs, profile, True), cwd=out, capture_output=True,
-                            text=True, check=False)
+    result = call(*snakemake_command(jobs, profile, True), cwd=out)
     if result.returncode != 0:
         raise Stopped(f"the dry run of Snakemake has failed: {result.stderr.strip()[-500:]}")
     return result.stdout.strip()
@@ -383,8 +378,7 @@ def run_snakemake(plan, jobs, profile, progress):
     for path in errors:
         path.unlink(missing_ok=True)
     log, command = pathlib.Path("snakemake.log"), snakemake_command(jobs, profile)
-    code, = work_off({"snakemake": (lambda: PROGRAMS.run(command, None, log), [])}, 1,
-                     progress.show).values()
+    code, = work_off({"snakemake": (lambda: PROGRAMS.run(command, None, log), [])}, 1, progress.show).values()
     for path, name in errors.items():
         if path.exists():
             kind, _, message = path.read_text(encoding="utf-8").strip().partition(" ")
@@ -396,7 +390,7 @@ def run_snakemake(plan, jobs, profile, progress):
 
 def error_file(kind, name):
     """Where a job of Snakemake writes why it could not be made."""
-    return pathlib.Path("runs") / name / ERROR if kind == "run" else pathlib.Path(f"{name}.{ERROR}")
+    return pathlib.Path(f"runs/{name}/{ERROR}" if kind == "run" else f"{name}.{ERROR}")
 
 
 def job(words):

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures of a run: how each is taken from its results, and how tables show it."""
 
+import collections
 import dataclasses
 import json
 import shlex
-import subprocess
 
-from support import Stopped, one_line, value_at
+from support import Stopped, call, one_line, value_at
 
 
-@dataclasses.dataclass(frozen=True)
-class Column:
-    heading: str
-    key: str  # in the figures of a run
+Column = collections.namedtuple("Column", ("heading", "key"))  # the key is that in the figures of a run
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,12 +43,6 @@ FIGURES = {
 }
 
 
-def lost_percent(summary):
-    """The share of the frames without a pose; None if it is not known."""
-    frames, tracked = (value_at(summary, "trajectory", key) for key in ("frames", "tracked"))
-    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
-
-
 def of_true_objects(report):
     """The figures of the comparison with true objects, from the report of `evaluate objects`."""
     once, more, visible = (value_at(report, "groundtruth", key) for key in ("once", "more", "visible"))
@@ -65,22 +56,23 @@ def of_true_objects(report):
 
 def ask(*command):
     """The JSON report of an evaluation; {} if it refuses its input, for example no poses."""
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    result = call(*command)
     try:
         return json.loads(result.stdout) if result.returncode == 0 else {}
     except ValueError as error:
-        raise Stopped(f"{shlex.join(command)}: has printed no JSON: {one_line(error)}") from error
+        raise Stopped(f"{shlex.join(map(str, command))}: has printed no JSON: {one_line(error)}") from error
 
 
 def evaluate(program, run, folder, summary):
     """The figures of a finished run in `folder`. `program` is hullslam."""
     out, truth, scale = folder / "out", folder / "groundtruth.txt", 1.0
-    figures = {"lost": lost_percent(summary), "frames": value_at(summary, "trajectory", "frames"),
+    frames, tracked = (value_at(summary, "trajectory", key) for key in ("frames", "tracked"))
+    figures = {"lost": 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None,
+               "frames": frames,
                "keyframes": value_at(summary, "map", "keyframes"), "loops": value_at(summary, "map", "loops")}
     for file, prefix in (("trajectory.txt", ""), ("keyframes.txt", "keyframes_")):
         for alignment in ("se3", "sim3")[run["mode"] == "mono":] if truth.exists() else ():
-            report = ask(program, "evaluate", "trajectory", str(truth), str(out / file), "--align", alignment,
-                         "--json")
+            report = ask(program, "evaluate", "trajectory", truth, out / file, "--align", alignment, "--json")
             figures[f"{prefix}ate_{alignment}"] = value_at(report, "ate_m", "rmse")
             if run["mode"] == "mono" and not prefix:
                 scale = value_at(report, "scale")
@@ -93,6 +85,6 @@ def evaluate(program, run, folder, summary):
                 "siou_mask": value_at(summary, "objects", "siou_mask_mean"),
                 "mtd": None if mtd is None or scale is None else mtd * scale**2}
     if run["objects"] is not None:
-        figures |= of_true_objects(ask(program, "evaluate", "objects", str(out), "--groundtruth",
+        figures |= of_true_objects(ask(program, "evaluate", "objects", out, "--groundtruth",
                                        run["objects"], "--json"))
     return figures

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tables as a Markdown file, and as a LaTeX document that compiles by itself, with booktabs."""
 
-from paper_tables.text import DASH, claims_grid, grids, preface, ranking_grid
+import textwrap
+
+from paper_tables.text import DASH, Best, claims_grid, grids, preface, ranking_grid
 
 SPECIAL = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",
            "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
@@ -24,7 +26,7 @@ def all_grids(report):
     """(level of the heading, grid) of all tables, in order."""
     for block in report.blocks:
         yield from zip((2, 3), grids(report, block))
-        if (order := ranking_grid(report, block)) is not None:
+        if (order := ranking_grid(block)) is not None:
             yield 3, order
     if report.claims:
         yield 2, claims_grid(report)
@@ -44,8 +46,8 @@ def markdown_lines(grid, level):
              "| " + " | ".join(map(escape_markdown, grid.head)) + " |", "|" + "---|" * width]
     for row in grid.rows:
         mark = "*" if len(row) == 1 else ""
-        texts = [f"{mark}{escape_markdown(item.text)}{mark}" for item in row]
-        texts = [f"**{text}**" if item.is_best else text for item, text in zip(row, texts)]
+        texts = [f"{mark}{escape_markdown(text)}{mark}" for text in row]
+        texts = [f"**{shown}**" if isinstance(text, Best) else shown for text, shown in zip(row, texts)]
         lines.append("| " + " | ".join([*texts, *[""] * (width - len(texts))]) + " |")
     if grid.notes:
         lines += ["", *(f"* {escape_markdown(note)}" for note in grid.notes)]
@@ -70,16 +72,13 @@ def escape_latex(text):
 
 def column_kind(grid, index):
     """Columns are as wide as their texts; long texts are broken into lines."""
-    longest = max((len(row[index].text) for row in grid.rows if len(row) > index), default=0)
+    longest = max((len(row[index]) for row in grid.rows if len(row) > index), default=0)
     return r"p{80mm}" if longest > 70 else "l" if index == 0 else "r"
 
 
 def latex_heading(text):
     """The heading of a column, in short lines."""
-    lines = [""]
-    for word in text.split():
-        is_full = lines[-1] and len(lines[-1]) + len(word) > 14
-        lines = [*lines, word] if is_full else [*lines[:-1], f"{lines[-1]} {word}".strip()]
+    lines = textwrap.wrap(text, 15, break_long_words=False, break_on_hyphens=False)
     broken = r" \\ ".join(map(escape_latex, lines))
     return rf"\begin{{tabular}}[b]{{@{{}}r@{{}}}}{broken}\end{{tabular}}" if lines[1:] else broken
 
@@ -93,20 +92,18 @@ def latex_lines(grid):
              r"\toprule", " & ".join(heads) + r" \\", r"\midrule", r"\endhead", r"\bottomrule",
              r"\endfoot"]
     for index, row in enumerate(grid.rows):
-        texts = [escape_latex(item.text) for item in row]
+        texts = [rf"\textbf{{{escape_latex(text)}}}" if isinstance(text, Best) else escape_latex(text)
+                 for text in row]
         if len(row) == 1:
             lines += [r"\addlinespace"] if index else []
             lines.append(rf"\multicolumn{{{width}}}{{l}}{{\textit{{{texts[0]}}}}} \\")
         else:
-            lines.append(" & ".join(rf"\textbf{{{text}}}" if item.is_best else text
-                                    for item, text in zip(row, texts)) + r" \\")
-    return [*lines, r"\end{longtable}", *(rf"\noindent {escape_latex(note)}\par" for note in grid.notes),
-            ""]
+            lines.append(" & ".join(texts) + r" \\")
+    return [*lines, r"\end{longtable}", *(rf"\noindent {escape_latex(note)}\par" for note in grid.notes), ""]
 
 
 def latex(report):
-    lines = [LATEX_HEAD.rstrip("\n"), *(rf"\noindent {escape_latex(line)}\par"
-                                        for line in preface(report))]
+    lines = [LATEX_HEAD.rstrip("\n"), *(rf"\noindent {escape_latex(line)}\par" for line in preface(report))]
     for _, grid in all_grids(report):
         if grid.rows:
             lines += ["", *latex_lines(grid)]

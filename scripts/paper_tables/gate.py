@@ -21,7 +21,8 @@ import statistics
 
 import numpy as np
 
-from paper_tables.text import DASH, Grid, Text
+from paper_tables.definitions import ALL_MODES
+from paper_tables.text import DASH, Best, Grid
 from run_alignment import LEAST_POSES, align, align_most, move, pair
 from run_statistics import sign_probability
 from support import InputError, read_trajectory, value_at
@@ -43,32 +44,32 @@ class Measure:
     """A figure that is compared."""
     title: str
     keys: dict  # mode -> key in the figures of a run
-    is_relative: bool  # differences are those of the logarithms
     is_lower_better: bool
     least: float  # difference that matters, for a case of few runs
-    disaster: dict  # mode -> difference of a single run; inf: none
+    disaster: dict = dataclasses.field(default_factory=dict)  # mode -> difference of a single run; else none
+    is_relative: bool = False  # differences are those of the logarithms
     factor: float = 1.0  # from the unit of a run to that of the tables
     digits: int = 1
 
 
-def both(value):
-    return {"rgbd": value, "mono": value, "stereo": value}
+def each(value):
+    return dict.fromkeys(ALL_MODES, value)
 
 
 # One keyframe more or less changes the error by some 5 %, loses a frame or two of 100, and shifts an
 # object by a few percent of its size. Monocular errors vary more: between f922b75 and 87e868e, single
 # runs of cases that are the same differ by at most 5 % with depth and 25 % without.
 MEASURES = {
-    "ate": Measure("ATE, mm", {"rgbd": "ate_se3", "mono": "ate_sim3", "stereo": "ate_se3"}, True, True, math.log(1.05),
-                   {"rgbd": math.log(1.5), "mono": math.log(2.0), "stereo": math.log(1.5)}, 1e3, 2),
+    "ate": Measure("ATE, mm", each("ate_se3") | {"mono": "ate_sim3"}, True, math.log(1.05),
+                   each(math.log(1.5)) | {"mono": math.log(2.0)}, True, 1e3, 2),
     # Lost is better than wrong, so a frame that was wrong and is lost now is no frame worse.
-    "unknown": Measure("no right pose, %", both("unknown"), False, True, 2.0, both(10.0)),
-    "wrong": Measure("wrong pose, %", both("wrong"), False, True, 2.0, both(5.0)),
-    "objects": Measure("objects", both("objects"), False, False, 1.0, both(math.inf)),
-    "found": Measure("found, %", both("found"), False, False, 0.05, both(math.inf), 1e2),
-    "siou": Measure("SIoU", both("siou"), False, False, 0.02, both(math.inf), 1.0, 3),
-    "scale": Measure("scale error, %", {"rgbd": "scale_error", "stereo": "scale_error"}, False, True, 0.001, both(math.inf), 1e2,
-                     2),
+    "unknown": Measure("no right pose, %", each("unknown"), True, 2.0, each(10.0)),
+    "wrong": Measure("wrong pose, %", each("wrong"), True, 2.0, each(5.0)),
+    "objects": Measure("objects", each("objects"), False, 1.0),
+    "found": Measure("found, %", each("found"), False, 0.05, factor=1e2),
+    "siou": Measure("SIoU", each("siou"), False, 0.02, digits=3),
+    "scale": Measure("scale error, %", {"rgbd": "scale_error", "stereo": "scale_error"}, True, 0.001,
+                     factor=1e2, digits=2),
 }
 KEPT = ("ate_se3", "ate_sim3", "keyframes_ate_sim3", "lost", "frames", "keyframes", "loops",
         "objects", "siou", "found", "doubles")  # of the figures of a table run
@@ -144,11 +145,6 @@ def grouped(names, key):
     return found
 
 
-def usual_spread(groups):
-    """The median spread of the differences within groups that have two or more."""
-    return statistics.median([statistics.stdev(values) for values in groups if len(values) > 1] or [0.0])
-
-
 def limit(measure, values, prior):
     """The largest median of the differences `values` that may be chance."""
     prior = max(prior, measure.least / DEVIATIONS)
@@ -162,23 +158,19 @@ def verdict(change, largest):
     return "worse" if change > largest else "better" if change < -largest else "same"
 
 
-@dataclasses.dataclass
 class Comparison:
-    """Two reports of a gate, {name: run} each."""
-    before: dict
-    after: dict
+    """Two reports of a gate, {name: run} each. Only runs of the same input are compared, as figures of
+    other images or settings tell nothing about the program."""
 
-    def __post_init__(self):
-        self.common = [name for name in self.after if self.has_same_input(name)]
-        self.changes = {key: self.changes_of(measure) for key, measure in MEASURES.items()}
-        self.cases = self.compare_cases()
-        self.families = self.compare_families()
-        self.disasters = self.find_disasters()
-
-    def changes_of(self, measure):
-        found = {name: worsening(measure, self.before[name], self.after[name])
-                 for name in self.common}
-        return {name: change for name, change in found.items() if change is not None}
+    def __init__(self, before, after):
+        self.before, self.after = before, after
+        self.common = [name for name, run in after.items()
+                       if name in before and before[name].get("input") == run["input"]]
+        self.changes = {key: {name: change for name in self.common if (
+            change := worsening(measure, before[name], after[name])) is not None}
+            for key, measure in MEASURES.items()}
+        self.cases, self.families = self.compare_cases(), self.compare_families()
+        self.disasters = list(self.find_disasters())
 
     def case_of(self, name):
         run = self.after[name]
@@ -188,12 +180,12 @@ class Comparison:
         """{(case, mode, variant): {measure: (median change, limit, verdict)}}"""
         found = {group: {} for group in grouped(self.common, self.case_of)}
         for key, measure in MEASURES.items():
-            changes = self.changes[key]
-            groups = {group: [changes[name] for name in names]
-                      for group, names in grouped(changes, self.case_of).items()}
+            groups = {group: [self.changes[key][name] for name in names]
+                      for group, names in grouped(self.changes[key], self.case_of).items()}
             for group, values in groups.items():
-                prior = usual_spread([other for (_, mode, _), other in groups.items()
-                                      if mode == group[1]])
+                # The usual spread: the median over the cases of this mode that have two runs or more.
+                prior = statistics.median([statistics.stdev(others) for (_, mode, _), others in groups.items()
+                                           if mode == group[1] and len(others) > 1] or [0.0])
                 largest, median = limit(measure, values, prior), statistics.median(values)
                 found[group][key] = (median, largest, verdict(median, largest))
         return found
@@ -218,32 +210,20 @@ class Comparison:
         """(name, measure, before, after) of single runs that have become much worse, and worse than
         every run of their case was; (name, None, before, after) of runs that now crash."""
         groups = grouped(self.common, self.case_of)
-        found = []
         for name in self.common:
             old, new = self.before[name], self.after[name]
             for key, measure in MEASURES.items():
-                change = self.changes[key].get(name)
-                if change is not None and change >= measure.disaster[new["mode"]]:
-                    former = [value_of(measure, self.before[other])
-                              for other in groups[self.case_of(name)]]
-                    if value_of(measure, new) > max(v for v in former if v is not None):
-                        found.append((name, key, value_of(measure, old), value_of(measure, new)))
+                if self.changes[key].get(name, -math.inf) >= measure.disaster.get(new["mode"], math.inf):
+                    former = [value_of(measure, self.before[other]) for other in groups[self.case_of(name)]]
+                    if value_of(measure, new) > max(value for value in former if value is not None):
+                        yield name, key, value_of(measure, old), value_of(measure, new)
             if is_crash(new) and not is_crash(old):
-                found.append((name, None, old["failure"] or "done", new["failure"]))
-        return found
+                yield name, None, old["failure"] or "done", new["failure"]
 
     def is_worse(self):
         tables = [*self.cases.values(), *self.families.values()]
         return bool(self.disasters) or any(told == "worse" for table in tables
                                            for _, _, told in table.values())
-
-    def has_same_input(self, name):
-        """Figures of other images or settings tell nothing about the program."""
-        return name in self.before and self.before[name].get("input") == self.after[name]["input"]
-
-    def new(self):
-        """The runs that are not compared: they were not there before, or had another input."""
-        return [name for name in self.after if name not in self.common]
 
 
 def is_crash(run):
@@ -257,11 +237,6 @@ def number(measure, value):
     return DASH if value is None else f"{value * measure.factor:.{measure.digits}f}"
 
 
-def median_of(measure, runs):
-    values = [value for run in runs if (value := value_of(measure, run)) is not None]
-    return statistics.median(values) if values else None
-
-
 def change_text(measure, change):
     """The change in the unit of the tables, where more is more."""
     change = change if measure.is_lower_better else -change
@@ -272,18 +247,18 @@ def change_text(measure, change):
 
 def case_cell(comparison, group, key, names):
     measure = MEASURES[key]
-    old, new = (median_of(measure, [runs[name] for name in names])
-                for runs in (comparison.before, comparison.after))
+    values = ([value for name in names if (value := value_of(measure, runs[name])) is not None]
+              for runs in (comparison.before, comparison.after))
+    old, new = (statistics.median(of_runs) if of_runs else None for of_runs in values)
     entry = comparison.cases[group].get(key)
     if entry is None or old is None or new is None:
-        return Text(DASH if old is None and new is None else
-                    f"{number(measure, old)} -> {number(measure, new)}")
+        return DASH if old is None and new is None else f"{number(measure, old)} -> {number(measure, new)}"
     text = number(measure, old)
     if number(measure, new) != text:
         text += f" -> {number(measure, new)}"
     if entry[2] != "same":
         text += f" ({change_text(measure, entry[0])}, {entry[2]})"
-    return Text(text, is_best=entry[2] == "worse")
+    return Best(text) if entry[2] == "worse" else text
 
 
 def case_grid(comparison, only_changed=False):
@@ -293,7 +268,7 @@ def case_grid(comparison, only_changed=False):
         told = [entry[2] for entry in comparison.cases[group].values()]
         if only_changed and not any(word != "same" for word in told):
             continue
-        rows.append([*(Text(word) for word in group), Text(str(len(names))),
+        rows.append([*group, str(len(names)),
                      *(case_cell(comparison, group, key, names) for key in MEASURES)])
     return Grid("Cases", ["case", "mode", "variant", "runs",
                           *(measure.title for measure in MEASURES.values())], rows,
@@ -310,21 +285,19 @@ def family_lines(comparison):
 
 
 def disaster_lines(comparison):
-    for name, key, old, new in comparison.disasters:
-        if key is None:
-            yield f"worse: {name}: {old} -> {new}"
-        else:
-            measure = MEASURES[key]
-            yield (f"worse: {name}: {measure.title} {number(measure, old)} -> "
-                   f"{number(measure, new)}")
+    for name, key, *values in comparison.disasters:
+        title, (old, new) = "", values
+        if key is not None:
+            title, (old, new) = f"{MEASURES[key].title} ", (number(MEASURES[key], value) for value in values)
+        yield f"worse: {name}: {title}{old} -> {new}"
 
 
 def new_lines(comparison):
     """The figures of the runs that are not compared."""
-    for name in comparison.new():
-        run = comparison.after[name]
-        shown = [f"{MEASURES[key].title} {number(MEASURES[key], value)}" for key in ("ate", "unknown", "wrong")
-                 if (value := value_of(MEASURES[key], run)) is not None]
+    for name in [name for name in comparison.after if name not in comparison.common]:
+        measures = [MEASURES[key] for key in ("ate", "unknown", "wrong")]
+        shown = [f"{measure.title} {number(measure, value)}" for measure in measures
+                 if (value := value_of(measure, comparison.after[name])) is not None]
         why = "has another input than before" if name in comparison.before else "is new"
         yield f"not compared: {name} {why}: {', '.join(shown) or 'no figures'}"
 

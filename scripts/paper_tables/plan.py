@@ -15,11 +15,10 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 
 from paper_tables.definitions import MODES
 from paper_tables.engine import DIGITS, RESULT_VERSION
-from support import SCRIPTS, InputError, hash_file, read_text
+from support import SCRIPTS, InputError, call, hash_file, number, programs_folder, reachable, read_text
 
 # The estimators of the modes and data sets.
 ESTIMATORS = {("rgbd", "tum"): "rgbd_tum", ("mono", "tum"): "mono_tum", ("rgbd", "icl"): "rgbd_icl",
@@ -53,6 +52,20 @@ def chosen(text, known, option):
     return tuple(name for name in known if name in names)
 
 
+def add_work_options(parser, timeout):
+    """Adds the options of scripts that make runs."""
+    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
+                        help="the programs that are run (default: those of this installation or of "
+                             "build/release/bin)")
+    parser.add_argument("--jobs", type=number(1, kind=int), metavar="N",
+                        help="runs at once (default: one per core)")
+    parser.add_argument("--timeout", type=number(1e-3, 1e9), default=timeout, metavar="S",
+                        help=f"longest time of a run (default {timeout:g} s)")
+    parser.add_argument("--list", action="store_true", help="print what would be run, and end")
+    parser.add_argument("--so-far", action="store_true", help="run nothing; take the runs that are done")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
 class Tools:
     """The programs and files of HullSLAM that runs depend on. `others` has the programs that evaluate
     and render, which should be the same for all builds that are compared."""
@@ -80,9 +93,7 @@ class Tools:
 
     def hash_with_others(self, files, others):
         """The hashes of files and of the files others(text of a file), and so on."""
-        for path in files:  # grows while it is read
-            files += [other for other in dict.fromkeys(others(read_text(path))) if other not in files]
-        return [self.hash(path) for path in files]
+        return list(map(self.hash, reachable(files, lambda path: others(read_text(path)))))
 
     def preset_file(self, name):
         """The file of a preset: one of those of HullSLAM, or a path."""
@@ -100,7 +111,7 @@ class Tools:
         based on."""
         names = [name for option, name in zip(arguments, arguments[1:]) if option == "--preset"]
         bases = re.compile(r"^preset\.base:\s*(\S+)", re.MULTILINE)
-        return self.hash_with_others(list(map(self.preset_file, names)),
+        return self.hash_with_others(map(self.preset_file, names),
                                      lambda text: map(self.preset_file, bases.findall(text)))
 
     def script_hash(self, script):
@@ -119,8 +130,7 @@ def libraries(program):
     with program.open("rb") as file:
         if file.read(4) != b"\x7fELF":
             return []
-    found = subprocess.run(["ldd", program], capture_output=True, text=True, check=False).stdout
-    return [pathlib.Path(path) for path in re.findall(r"=> (\S*/libhullslam\S*)", found)]
+    return list(map(pathlib.Path, re.findall(r"=> (\S*/libhullslam\S*)", call("ldd", program).stdout)))
 
 
 # ---- one run

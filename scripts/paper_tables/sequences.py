@@ -7,14 +7,18 @@ import hashlib
 import json
 import pathlib
 import re
-import subprocess
+import sys
 import tempfile
 
-from support import InputError, hash_file, one_line, read_json, read_text, try_read_json
+from support import InputError, call, hash_file, one_line, read_json, read_text, try_read_json
 from tum_and_icl import read_rows
 
 PNG_END, JPEG_END = b"IEND\xaeB`\x82", b"\xff\xd9"
 IMAGES = {".png", ".jpg", ".jpeg"}
+LISTS = {"tum": [("rgb.txt", [0]), ("depth.txt", [0])],  # and which words after the stamp are paths
+         "icl": [("associations.txt", [0, 2])]}
+PATTERNS = {"tum": ("rgb/*", "depth/*"), "icl": ("scene_00_*",), "kitti": ("image_0/*", "image_1/*"),
+            "euroc": ("mav0/cam0/data/*", "mav0/cam1/data/*")}
 PAIRS = ("euroc", "kitti")  # data sets of stereo cameras
 PREFIX = "rgbd_dataset_"  # of the folders of TUM RGB-D
 FRAMES = 300  # of a sequence of the suite, unless --frames says otherwise
@@ -78,19 +82,13 @@ def find_dataset(folder):
 
 def listed_images(folder, dataset):
     """(list, path) of each image that a list of the sequence names; without lists (folder, path)."""
-    found, rows = [], {}
-    for name in ("rgb.txt", "depth.txt") if dataset == "tum" else ("associations.txt",) if dataset == "icl" else ():
-        if (folder / name).is_file():
-            rows[folder / name] = [words for _, words in read_rows(folder / name)]
-    for path, lines in rows.items():
-        if dataset == "icl" and any(len(words) < 3 for words in lines):
-            raise InputError(f"{path}: expected lines: index depth index rgb")
-        found += [(path, folder / words[i]) for words in lines
-                  for i in ((0,) if dataset == "tum" else (0, 2))]
-    patterns = {"tum": ("rgb/*", "depth/*"), "icl": ("scene_00_*",),
-                "euroc": ("mav0/cam0/data/*", "mav0/cam1/data/*"),
-                "kitti": ("image_0/*", "image_1/*")}[dataset]
-    return found or [(folder, path) for pattern in patterns for path in sorted(folder.glob(pattern))
+    found = []
+    for name, places in LISTS.get(dataset, ()):
+        for _, words in read_rows(folder / name) if (folder / name).is_file() else ():
+            if len(words) <= places[-1]:
+                raise InputError(f"{folder / name}: expected lines: index depth index rgb")
+            found += [(folder / name, folder / words[i]) for i in places]
+    return found or [(folder, path) for pattern in PATTERNS[dataset] for path in sorted(folder.glob(pattern))
                      if path.suffix.lower() in IMAGES]
 
 
@@ -153,15 +151,16 @@ def has_rolling_shutter(settings):
     return match is not None and float(match[1]) != 0.0
 
 
+def hash_lines(lines):
+    return hashlib.sha256("".join(lines).encode()).hexdigest()
+
+
 def hash_masks(path):
     """The hash of a file, or of the names and the contents of the files in a folder."""
     if path.is_file():
         return hash_file(path)
-    digest = hashlib.sha256()
-    for file in sorted(path.rglob("*")):
-        if file.is_file():
-            digest.update(f"{file.relative_to(path)}\0{hash_file(file)}\n".encode())
-    return digest.hexdigest()
+    return hash_lines(f"{file.relative_to(path)}\0{hash_file(file)}\n" for file in sorted(path.rglob("*"))
+                      if file.is_file())
 
 
 def fingerprint(folder, images, settings):
@@ -171,9 +170,8 @@ def fingerprint(folder, images, settings):
     """
     texts = sorted(path for path in folder.iterdir()
                    if path.suffix in (".txt", ".freiburg", ".yaml") and path.is_file())
-    lines = [f"{path.name}\0{hash_file(path)}\n" for path in [*texts, settings]]
-    lines += [f"{path.relative_to(folder)}\0{path.stat().st_size}\n" for path in images]
-    return hashlib.sha256("".join(lines).encode()).hexdigest()
+    return hash_lines([*(f"{path.name}\0{hash_file(path)}\n" for path in [*texts, settings]),
+                       *(f"{path.relative_to(folder)}\0{path.stat().st_size}\n" for path in images)])
 
 
 # ---- recorded sequences
@@ -196,17 +194,16 @@ def read_sequence(text, masks, paper_sequences, config):
     if settings is None:
         raise InputError(f"{folder}: its camera is not known; put its settings into camera.yaml in "
                          "this folder (docs/settings.md)")
-    name = short_name(folder)
-    path, objects = find_masks(folder, masks, name), folder / "groundtruth_objects.json"
+    name, is_pairs, objects = short_name(folder), dataset in PAIRS, folder / "groundtruth_objects.json"
+    path = find_masks(folder, masks, name)
     has_depth = dataset == "icl" or (folder / "depth.txt").is_file() or (folder / "depth").is_dir()
-    has_pairs = dataset in PAIRS or (folder / "right").is_dir()
-    modes = (("rgbd",) * has_depth + ("mono",) * (dataset not in PAIRS) + ("stereo",) * has_pairs)
+    modes = {"rgbd": has_depth, "mono": not is_pairs, "stereo": is_pairs or (folder / "right").is_dir()}
     return Sequence(name, dataset, paper_name(name, paper_sequences), str(folder.resolve()),
                     str(path.resolve()) if path else None,
                     str(objects.resolve()) if objects.is_file() else None,
-                    modes=modes,
-                    frames=len(images) // 2 if has_depth or dataset in PAIRS else len(images),
-                    settings=None if dataset in PAIRS else str(settings.resolve()),
+                    modes=tuple(mode for mode, is_there in modes.items() if is_there),
+                    frames=len(images) // 2 if has_depth or is_pairs else len(images),
+                    settings=None if is_pairs else str(settings.resolve()),
                     has_rolling_shutter=has_rolling_shutter(settings),
                     fingerprint=fingerprint(folder, images, settings),
                     masks_fingerprint=hash_masks(path) if path else "")
@@ -246,8 +243,7 @@ def in_order(sequences, paper_sequences):
     for sequence in sequences:
         other = known.setdefault(sequence.name, sequence)
         if other is not sequence:
-            raise InputError(f"{other.folder} and {sequence.folder} have the same name "
-                             f"'{sequence.name}'")
+            raise InputError(f"{other.folder} and {sequence.folder} have the same name '{sequence.name}'")
     order = list(paper_sequences)
     return sorted(sequences, key=lambda s: order.index(s.paper) if s.paper else len(order))
 
@@ -257,9 +253,9 @@ def in_order(sequences, paper_sequences):
 
 def call_renderer(program, options):
     """Renders a sequence or a suite. make_synthetic leaves a folder only when it is complete."""
-    result = subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    result = call(program, *options)
     if result.returncode != 0:
-        raise InputError(f"{program} {' '.join(options)}: "
+        raise InputError(f"{program} {' '.join(map(str, options))}: "
                          f"{one_line(result.stderr.strip() or 'has failed', 300)}")
 
 
@@ -319,7 +315,7 @@ def renderer_hash(program):
     if newest.stat().st_mtime > program.stat().st_mtime:
         raise InputError(f"{program}: is older than {newest}; build it (cmake --build --preset release)")
     lines = [f"{path.name}\0{hash_file(path)}\n" for path in sources or [program]]
-    return hashlib.sha256("".join([*lines, probe_hash(program)]).encode()).hexdigest()
+    return hash_lines([*lines, probe_hash(program)])
 
 
 class Renderings:
@@ -338,20 +334,19 @@ class Renderings:
 
     def path(self, case, seed):
         self.renderer = self.renderer or renderer_hash(self.program)
-        key = json.dumps([self.renderer, case.source, self.options(case, seed)])
-        return self.folder / (f"{case.sequence}-{seed}-"
-                              f"{hashlib.sha256(key.encode()).hexdigest()[:RENDERING_DIGITS]}")
+        name = hash_lines(json.dumps([self.renderer, case.source, self.options(case, seed)]))
+        return self.folder / f"{case.sequence}-{seed}-{name[:RENDERING_DIGITS]}"
 
-    def missing(self, cases):
-        """{folder: options} of the renderings of the cases that are not there."""
-        found = {}
-        for case in cases:
-            for seed in case.seeds if case.source != "recorded" else ():
-                folder = self.path(case, seed)
-                if not folder.exists():
-                    target = ["--suite", str(folder)] if case.source == "suite" else [str(folder)]
-                    found[folder] = [*target, *self.options(case, seed)]
-        return found
+    def make(self, cases):
+        """Makes the renderings of the cases that are not there."""
+        wanted = {self.path(case, seed): (case, seed) for case in cases if case.source != "recorded"
+                  for seed in case.seeds}
+        missing = [folder for folder in wanted if not folder.exists()]
+        for index, folder in enumerate(missing, 1):
+            print(f"rendering {index} of {len(missing)}: {folder}", file=sys.stderr, flush=True)
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            target = ["--suite", folder] if wanted[folder][0].source == "suite" else [folder]
+            call_renderer(self.program, [*target, *self.options(*wanted[folder])])
 
 
 def find_sequence(case, seed, data, renderings, config):

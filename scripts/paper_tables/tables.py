@@ -3,6 +3,7 @@
 gathered in one report, of which all files are written."""
 
 import csv
+import dataclasses
 import io
 import json
 import statistics
@@ -27,28 +28,6 @@ def spread(values):
         return None
     return {"median": statistics.median(known.values()), "min": min(known.values()),
             "max": max(known.values()), "values": known}
-
-
-def columns_of(table, mode):
-    """(key, figure, column) of each column of a table."""
-    return [(key, FIGURES[key], column) for key in table.figures
-            for column in FIGURES[key].columns[mode]]
-
-
-def make_cell(cell, results, table, mode):
-    """A row of a table for one sequence.
-
-    Failed runs are counted, with their reasons, and left out of all figures but the share of frames
-    without a pose.
-    """
-    done = {seed: results[name] for seed, name in cell["runs"].items() if results.get(name)}
-    good = {seed: result for seed, result in done.items() if not result["failure"]}
-    figures = {column.key: spread({seed: result["figures"].get(column.key) for seed, result in
-                                   (done if key == "lost" else good).items()})
-               for key, _, column in columns_of(table, mode)}
-    return {**cell, "figures": figures, "done": len(done),
-            "missing": sorted(cell["runs"].keys() - done.keys()),
-            "failures": {seed: result["failure"] for seed, result in done.items() if result["failure"]}}
 
 
 def paper_value(paper, section, mode, row, sequence, figure):
@@ -81,8 +60,7 @@ def difference(figure, base, other):
     """
     if FIGURES[figure].lower_is_better and figure != "lost":
         change, p, pairs = compare(base, other)
-        return None if change is None else {"change": change, "p": p, "pairs": pairs,
-                                            "is_relative": True}
+        return None if change is None else {"change": change, "p": p, "pairs": pairs, "is_relative": True}
     pairs = [other[key] - base[key] for key in sorted(base.keys() & other.keys())]
     return {"change": statistics.fmean(pairs), "p": flip_probability(pairs), "pairs": len(pairs),
             "is_relative": False} if pairs else None
@@ -107,8 +85,7 @@ def answer(figure, changes):
 
 def values_of(runs, column):
     """{key: figure} of the runs {key: run} that have not failed."""
-    found = {key: value_at(run["figures"], column) for key, run in runs.items()
-             if run and not run["failure"]}
+    found = {key: value_at(run["figures"], column) for key, run in runs.items() if run and not run["failure"]}
     return {key: value for key, value in found.items() if value is not None}
 
 
@@ -147,12 +124,31 @@ def compare_reports(old, new):
 # ---- the report
 
 
+@dataclasses.dataclass
+class Block:
+    """A table in one mode: its cells by sequence, and how its rows compare over all sequences."""
+    table: object
+    mode: str
+    sequences: dict  # name -> cells
+    overall: dict = dataclasses.field(default_factory=dict)  # row -> comparison with the baseline
+
+    def __post_init__(self):
+        # (key, figure, column) of each column
+        self.columns = [(key, FIGURES[key], column) for key in self.table.figures
+                        for column in FIGURES[key].columns[self.mode]]
+        self.cells = [(name, cell) for name, cells in self.sequences.items() for cell in cells]
+        self.title = f"Table {self.table.name}: {self.table.title}, {MODE_TITLES[self.mode]}"
+
+    def as_json(self):
+        return {"table": self.table.name, "mode": self.mode, "sequences": self.sequences,
+                "overall": self.overall}
+
+
 class Report:
     """Everything that tables, pages and comparisons show."""
 
     def __init__(self, request, plan, cells, results, paper):
-        self.definitions, self.plan, self.results, self.paper = (request.definitions, plan, results,
-                                                                 paper)
+        self.definitions, self.plan, self.results, self.paper = (request.definitions, plan, results, paper)
         self.seeds, self.frames, self.is_quick = request.seeds, request.frames, request.is_quick
         self.sequences = {sequence.name: sequence for sequence in request.sequences}
         self.plays = {name: sequence.paper for name, sequence in self.sequences.items()}
@@ -163,10 +159,8 @@ class Report:
         self.claims = self.answer_claims()
 
     def make_block(self, table, mode, cells):
-        """A table in one mode: its cells by sequence, and how its rows compare over all sequences."""
-        block = {"table": table.name, "mode": mode, "sequences": {
-            name: [make_cell(cell, self.results, table, mode) for cell in of_sequence]
-            for name, of_sequence in cells.items()}, "overall": {}}
+        block = Block(table, mode, {name: [self.make_cell(cell, table, mode, name) for cell in of_sequence]
+                                    for name, of_sequence in cells.items()})
         figure = table.figures[0]
         column = FIGURES[figure].columns[mode][0].key
         base = values_of(self.runs_of(block, table.baseline), column)
@@ -174,23 +168,41 @@ class Report:
             runs = self.runs_of(block, row.variant)
             change = None if row.variant == table.baseline else \
                 difference(figure, base, values_of(runs, column))
-            block["overall"][row.variant] = {
+            block.overall[row.variant] = {
                 "difference": change, "verdict": verdict(figure, change), "runs": len(runs),
                 "failed": sum(1 for run in runs.values() if run and run["failure"])}
         return block
 
+    def make_cell(self, cell, table, mode, sequence):
+        """A row of a table for one sequence, with the figures of the paper in the unit of a run.
+
+        Failed runs are counted, with their reasons, and left out of all figures but the share of frames
+        without a pose.
+        """
+        done = {seed: self.results[name] for seed, name in cell["runs"].items() if self.results.get(name)}
+        failures = {seed: result["failure"] for seed, result in done.items() if result["failure"]}
+        figures = {column.key: spread({
+            seed: result["figures"].get(column.key) for seed, result in done.items()
+            if key == "lost" or seed not in failures})
+                   for key in table.figures for column in FIGURES[key].columns[mode]}
+        row = next(row for row in table.rows if row.variant == cell["row"])
+        papers = {key: None if cell["degradation"] else paper_value(
+            self.paper, table.paper, mode, row.paper, self.plays.get(sequence), key) for key in table.figures}
+        return {**cell, "label": row.label, "figures": figures, "papers": papers, "done": len(done),
+                "missing": sorted(cell["runs"].keys() - done.keys()), "failures": failures}
+
     def runs_of(self, block, row):
         """{(sequence, degradation, level, seed): result} of the runs of a row."""
         return {(sequence, cell["degradation"] or "", cell["level"] or "", seed): self.results.get(name)
-                for sequence, cells in block["sequences"].items() for cell in cells
-                if cell["row"] == row for seed, name in cell["runs"].items()}
+                for sequence, cell in block.cells if cell["row"] == row
+                for seed, name in cell["runs"].items()}
 
     def answer_claims(self):
         """For each claim and mode: the difference of `better` against each of the others."""
         runs = {}  # (mode, variant) -> {key: result}, without degraded runs
         for block in self.blocks:
-            for row in self.table(block).rows:
-                runs.setdefault((block["mode"], row.variant), {}).update(
+            for row in block.table.rows:
+                runs.setdefault((block.mode, row.variant), {}).update(
                     {key: run for key, run in self.runs_of(block, row.variant).items() if not key[1]})
         answers = []
         for claim in self.definitions.claims:
@@ -206,61 +218,15 @@ class Report:
                                     "than": changes})
         return answers
 
-    def table(self, block):
-        return self.definitions.tables[block["table"]]
-
-    def row(self, block, cell):
-        return next(row for row in self.table(block).rows if row.variant == cell["row"])
-
-    def label(self, block, cell):
-        return self.row(block, cell).label
-
-    def title(self, block):
-        return f"Table {block['table']}: {self.table(block).title}, {MODE_TITLES[block['mode']]}"
-
-    def level(self, block, cell):
-        """The level of a cell of a table of degradations; none without a degradation."""
-        first = self.definitions.degradations[self.table(block).degradations[0]]
-        return cell["level"] or first.unchanged or "none"
-
-    def paper_figure(self, block, cell, sequence, figure):
-        """The paper's figure in the unit of a run; None if it has none."""
-        return None if cell["degradation"] else paper_value(
-            self.paper, self.table(block).paper, block["mode"], self.row(block, cell).paper,
-            self.plays.get(sequence), figure)
-
     def columns(self, block):
         """The sequences of a table in the order of the paper, then the others. Those of the paper
         that the user does not have are None: [(name, name in the paper)]."""
-        table, order = self.table(block), list(self.definitions.paper_sequences)
-        found = [(name, self.plays[name]) for name in block["sequences"]]
-        if not table.degradations:
+        order = list(self.definitions.paper_sequences)
+        found = [(name, self.plays[name]) for name in block.sequences]
+        if not block.table.degradations:
             had = {paper for _, paper in found}
-            found += [(None, paper) for paper in table.only or order if paper not in had]
+            found += [(None, paper) for paper in block.table.only or order if paper not in had]
         return sorted(found, key=lambda pair: order.index(pair[1]) if pair[1] else len(order))
-
-    def ranking(self, block):
-        """(row, our rank, the paper's rank) over the sequences for which both have all figures.
-
-        The order is that of the means of the ranks within each sequence, so that the sequences count
-        alike. Empty if fewer than two rows have figures.
-        """
-        figure = self.table(block).figures[0]
-        column = FIGURES[figure].columns[block["mode"]][-1].key
-        sign, ranks = 1.0 if FIGURES[figure].lower_is_better else -1.0, {}
-        for sequence, cells in block["sequences"].items():
-            pairs = {}
-            for cell in cells:
-                value = self.paper_figure(block, cell, sequence, figure)
-                if value is not None and cell["figures"].get(column):
-                    pairs[cell["row"]] = (cell["figures"][column]["median"], value)
-            for index in (0, 1) if len(pairs) > 1 else ():
-                order = sorted(pairs, key=lambda name, i=index: sign * pairs[name][i])
-                for rank, name in enumerate(order, 1):
-                    ranks.setdefault(name, ([], []))[index].append(rank)
-        return sorted(((row.variant, *map(statistics.fmean, ranks[row.variant]))
-                       for row in self.table(block).rows if row.variant in ranks),
-                      key=lambda item: item[1])
 
     def builds(self):
         """The commits of the programs that made the runs."""
@@ -283,7 +249,7 @@ class Report:
                 "variants": {name: {"label": variant.label, "arguments": variant.arguments,
                                     "masks": variant.masks}
                              for name, variant in self.definitions.variants.items()},
-                "tables": self.blocks, "claims": self.claims, "runs": runs}
+                "tables": [block.as_json() for block in self.blocks], "claims": self.claims, "runs": runs}
 
     def json_text(self):
         return json.dumps(self.as_json(), indent=1) + "\n"
@@ -293,22 +259,19 @@ class Report:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(CSV_HEAD)
         for block in self.blocks:
-            for sequence, cells in block["sequences"].items():
-                for cell in cells:
-                    for column in columns_of(self.table(block), block["mode"]):
-                        writer.writerow(self.csv_row(block, sequence, cell, *column))
+            for sequence, cell in block.cells:
+                for key, figure, column in block.columns:
+                    entry = cell["figures"].get(column.key) or {}
+                    paper = cell["papers"][key] if column is figure.columns[block.mode][-1] else None
+                    values = [*(entry.get(name) for name in ("median", "min", "max")), paper]
+                    *spread_of, paper = (
+                        "" if value is None else f"{value * figure.factor:.{figure.digits + 1}f}"
+                        for value in values)
+                    writer.writerow([
+                        block.table.name, block.mode, sequence, self.plays[sequence] or "", cell["label"],
+                        cell["degradation"] or "", cell["level"] or "", column.heading, *spread_of,
+                        cell["done"], len(cell["failures"]), len(cell["missing"]), paper])
         return file.getvalue()
-
-    def csv_row(self, block, sequence, cell, key, figure, column):
-        entry = cell["figures"].get(column.key) or {}
-        is_of_paper = column is figure.columns[block["mode"]][-1]
-        paper = self.paper_figure(block, cell, sequence, key) if is_of_paper else None
-        numbers = ["" if value is None else f"{value * figure.factor:.{figure.digits + 1}f}"
-                   for value in (*(entry.get(name) for name in ("median", "min", "max")), paper)]
-        return [block["table"], block["mode"], sequence, self.plays[sequence] or "",
-                self.label(block, cell), cell["degradation"] or "", cell["level"] or "",
-                column.heading, *numbers[:3], cell["done"], len(cell["failures"]),
-                len(cell["missing"]), numbers[3]]
 
 
 def read_report(path):

@@ -2,18 +2,16 @@
 """What the Markdown and LaTeX files have in common: grids of short texts."""
 
 import dataclasses
+import statistics
 
 from paper_tables.figures import FIGURES
-from paper_tables.tables import COMPARED, MODE_TITLES, columns_of
+from paper_tables.tables import COMPARED, MODE_TITLES
 
 DASH = "–"
 
 
-@dataclasses.dataclass
-class Text:
-    """A text of a grid."""
-    text: str
-    is_best: bool = False
+class Best(str):
+    """A text of a grid that is shown in bold."""
 
 
 @dataclasses.dataclass
@@ -42,11 +40,11 @@ def entry_text(cell, column, figure):
     """The median, the smallest and the largest value of the runs of a cell."""
     entry = cell["figures"].get(column.key)
     if entry is None:
-        return Text(DASH)
+        return DASH
     text = number(entry["median"], figure)
     if len(entry["values"]) > 1:
         text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
-    return Text(text)
+    return text
 
 
 # ---- overviews: a row for each system, a column for each sequence
@@ -55,31 +53,27 @@ def entry_text(cell, column, figure):
 def best_rows(block, sequence, column, figure):
     """The rows with the best median of a sequence, to the digits that are shown."""
     medians = {cell["row"]: number(cell["figures"][column.key]["median"], figure)
-               for cell in block["sequences"][sequence] if cell["figures"].get(column.key)}
+               for cell in block.sequences[sequence] if cell["figures"].get(column.key)}
     if len(set(medians.values())) < 2 or figure.lower_is_better is None:
         return set()
     best = (min if figure.lower_is_better else max)(medians.values(), key=float)
     return {row for row, text in medians.items() if text == best}
 
 
-def overview_cell(report, block, sequence, cell, best):
+def overview_cell(block, cell, best):
     """The medians of the first figure, and the paper's figure in brackets."""
-    table = report.table(block)
-    key = table.figures[0]
-    figure = FIGURES[key]
-    columns = figure.columns[block["mode"]]
-    entries = [cell["figures"].get(column.key) for column in columns]
-    text = " / ".join(number(entry["median"] if entry else None, figure) for entry in entries)
+    key = block.table.figures[0]
+    entries = [cell["figures"].get(column.key) for column in FIGURES[key].columns[block.mode]]
+    text = " / ".join(number(entry["median"] if entry else None, FIGURES[key]) for entry in entries)
     if not any(entries):
         text = "failed" if cell["failures"] else DASH
     else:
         text += f" !{len(cell['failures'])}" if cell["failures"] else ""
         lost = cell["figures"].get("lost")
         text += f", {lost['median']:.1f} %" if lost and lost["median"] >= 0.05 else ""
-    paper = report.paper_figure(block, cell, sequence, key)
-    if paper is not None:
-        text += f" [{number(paper, figure)}]"
-    return Text(text, cell["row"] in best)
+    if cell["papers"][key] is not None:
+        text += f" [{number(cell['papers'][key], FIGURES[key])}]"
+    return Best(text) if cell["row"] in best else text
 
 
 def sequence_heading(report, name):
@@ -89,29 +83,24 @@ def sequence_heading(report, name):
 
 def overview(report, block):
     """The grid with one row per system and one column per sequence."""
-    table = report.table(block)
-    figure = FIGURES[table.figures[0]]
-    columns = figure.columns[block["mode"]]
-    names = report.columns(block)
+    key, names = block.table.figures[0], report.columns(block)
+    columns = FIGURES[key].columns[block.mode]
+    labels = {row.variant: row.label for row in block.table.rows}
     head = ["", *(sequence_heading(report, name) if name else paper for name, paper in names),
-            "against " + next(row.label for row in table.rows if row.variant == table.baseline)]
+            f"against {labels[block.table.baseline]}"]
+    best = {name: best_rows(block, name, columns[0], FIGURES[key]) for name in block.sequences}
     rows = []
-    best = {name: best_rows(block, name, columns[0], figure) for name in block["sequences"]}
-    for index, row in enumerate(table.rows):
-        texts = [overview_cell(report, block, name, block["sequences"][name][index], best[name])
-                 if name else Text(DASH) for name, _ in names]
-        overall = block["overall"][row.variant]
-        rows.append([Text(row.label), *texts,
-                     Text(difference_text(overall["difference"], table.figures[0]))])
-    shown = " / ".join(column.heading for column in columns)
-    notes = [f"{shown}: medians of the runs that did not fail."]
-    if any(report.paper_figure(block, cell, name, table.figures[0]) is not None
-           for name, cells in block["sequences"].items() for cell in cells):
+    for index, (variant, label) in enumerate(labels.items()):
+        texts = [overview_cell(block, block.sequences[name][index], best[name]) if name else DASH
+                 for name, _ in names]
+        rows.append([label, *texts, difference_text(block.overall[variant]["difference"], key)])
+    notes = [f"{' / '.join(column.heading for column in columns)}: medians of the runs that did not fail."]
+    if any(cell["papers"][key] is not None for _, cell in block.cells):
         notes.append("In square brackets: the paper's figure, on the sequence of the paper.")
-    if any(cell["failures"] for cells in block["sequences"].values() for cell in cells):
+    if any(cell["failures"] for _, cell in block.cells):
         notes.append("!n: n runs failed.")
     notes.append("n %: so many frames have no pose (median of all runs), if any.")
-    return Grid(report.title(block), head, rows, notes)
+    return Grid(block.title, head, rows, notes)
 
 
 # ---- details: all figures of all sequences
@@ -119,91 +108,80 @@ def overview(report, block):
 
 def detail(report, block):
     """The grid with all figures, sequence by sequence."""
-    table = report.table(block)
-    columns = columns_of(table, block["mode"])
-    has_paper = {key for key in table.figures for name, cells in block["sequences"].items()
-                 for cell in cells if report.paper_figure(block, cell, name, key) is not None}
-    head = ["", *(column.heading for _, _, column in columns),
-            *(f"paper: {FIGURES[key].title}" for key in table.figures if key in has_paper), "runs"]
+    of_paper = [key for key in block.table.figures
+                if any(cell["papers"][key] is not None for _, cell in block.cells)]
+    head = ["", *(column.heading for _, _, column in block.columns),
+            *(f"paper: {FIGURES[key].title}" for key in of_paper), "runs"]
     rows = []
     for name, paper in report.columns(block):
         if name is None:
-            rows.append([Text(paper), *(Text(DASH) for _ in head[1:])])
+            rows.append([paper, *[DASH] * (len(head) - 1)])
             continue
-        rows.append([Text(sequence_heading(report, name))])
-        best = {column.key: best_rows(block, name, column, figure) for _, figure, column in columns}
-        for cell in block["sequences"][name]:
-            texts = [entry_text(cell, column, figure) for _, figure, column in columns]
-            for text, (_, _, column) in zip(texts, columns):
-                text.is_best = cell["row"] in best[column.key]
-            papers = [report.paper_figure(block, cell, name, key) for key in table.figures
-                      if key in has_paper]
-            rows.append([Text(report.label(block, cell)), *texts,
-                         *(Text(number(value, FIGURES[key])) for value, key in zip(
-                             papers, [key for key in table.figures if key in has_paper])),
-                         Text(f"{cell['done']}" + "".join(f", {len(cell[key])} {told}" for key, told in (
-                             ("failures", "failed"), ("missing", "not run")) if cell[key]))])
-    return Grid(report.title(block) + ", all figures", head, rows,
-                [*shared_runs(report, block), *reasons(report, block), *failures(report, block)])
+        rows.append([sequence_heading(report, name)])
+        best = {column.key: best_rows(block, name, column, figure) for _, figure, column in block.columns}
+        for cell in block.sequences[name]:
+            texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
+            texts = [Best(text) if cell["row"] in best[column.key] else text
+                     for text, (_, _, column) in zip(texts, block.columns)]
+            runs = f"{cell['done']}"
+            for key, told in ("failures", "failed"), ("missing", "not run"):
+                runs += f", {len(cell[key])} {told}" if cell[key] else ""
+            rows.append([cell["label"], *texts,
+                         *(number(cell["papers"][key], FIGURES[key]) for key in of_paper), runs])
+    return Grid(f"{block.title}, all figures", head, rows,
+                [*shared_runs(report, block), *reasons(block), *failures(block)])
 
 
-def reasons(report, block):
+def reasons(block):
     """Why cells are empty."""
     found = {}
-    for name, cells in block["sequences"].items():
-        for cell in cells:
-            if not cell["runs"]:
-                found.setdefault(cell["reason"], {})[f"{name}, {report.label(block, cell)}"] = True
+    for name, cell in block.cells:
+        if not cell["runs"]:
+            found.setdefault(cell["reason"], {})[f"{name}, {cell['label']}"] = True
     return [f"{DASH} {reason}: {'; '.join(names)}." for reason, names in found.items()]
 
 
 def shared_runs(report, block):
     """The rows that show the runs of another variant, as the cameras have no rolling shutter."""
-    variants, found = report.definitions.variants, []
-    for row in report.table(block).rows:
+    variants = report.definitions.variants
+    for row in block.table.rows:
         other = variants[row.variant].same_as
-        names = [name for name in block["sequences"]
-                 if other and not report.sequences[name].has_rolling_shutter]
+        names = [name for name in block.sequences if other and not report.sequences[name].has_rolling_shutter]
         if names:
-            found.append(f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
-                         f"shutter, on {', '.join(names)}.")
-    return found
+            yield (f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
+                   f"shutter, on {', '.join(names)}.")
 
 
-def failures(report, block):
+def failures(block):
     """Each failed run with its reason."""
     return [f"failed: {cell['runs'][seed]}: {reason}"
-            for cells in block["sequences"].values() for cell in cells
-            for seed, reason in sorted(cell["failures"].items())]
+            for _, cell in block.cells for seed, reason in sorted(cell["failures"].items())]
 
 
 def degradation_grid(report, block):
     """The grid of a table of degradations: a row for each level, columns for each system."""
-    table = report.table(block)
-    columns = columns_of(table, block["mode"])
+    table, known = block.table, report.definitions.degradations
     head = ["", "level", *(f"{row.label}: {column.heading}" for row in table.rows
-                           for _, _, column in columns)]
+                           for _, _, column in block.columns)]
     rows = []
-    for name, cells in block["sequences"].items():
-        rows.append([Text(sequence_heading(report, name))])
+    for name, cells in block.sequences.items():
+        rows.append([sequence_heading(report, name)])
         for start in range(0, len(cells), len(table.rows)):
             group = cells[start:start + len(table.rows)]
-            level = report.level(block, group[0])
-            label, level = ("none", "") if level == "none" else (report.definitions.degradations[
-                group[0]["degradation"] or table.degradations[0]].label, level)
-            texts = [entry_text(cell, column, figure) for cell in group
-                     for _, figure, column in columns]
-            for cell, first in zip(group, range(0, len(texts), len(columns))):
-                if cell["failures"]:
-                    texts[first].text += f" !{len(cell['failures'])}"
-            rows.append([Text(label), Text(level), *texts])
-    return Grid(report.title(block), head, rows,
-                ["!n: n runs failed.", *reasons(report, block), *failures(report, block)])
+            of_row = known[group[0]["degradation"] or table.degradations[0]]
+            level = group[0]["level"] or of_row.unchanged  # None: of runs without a degradation
+            row = [of_row.label if level else "none", level or ""]
+            for cell in group:
+                texts = [entry_text(cell, column, figure) for _, figure, column in block.columns]
+                texts[0] += f" !{len(cell['failures'])}" if cell["failures"] else ""
+                row += texts
+            rows.append(row)
+    return Grid(block.title, head, rows, ["!n: n runs failed.", *reasons(block), *failures(block)])
 
 
 def grids(report, block):
     """All grids of a block of the report but that of the ranks."""
-    if report.table(block).degradations:
+    if block.table.degradations:
         return [degradation_grid(report, block)]
     return [overview(report, block), detail(report, block)]
 
@@ -218,24 +196,35 @@ def claims_grid(report):
     for claim in report.claims:
         told = "; ".join(f"against {label(name)} {difference_text(change, claim['figure'])}"
                          for name, change in claim["than"].items())
-        rows.append([Text(claim["text"]), Text(MODE_TITLES[claim["mode"]]),
-                     Text(claim["answer"]), Text(f"{label(claim['better'])}: {told}")])
+        rows.append([claim["text"], MODE_TITLES[claim["mode"]],
+                     claim["answer"], f"{label(claim['better'])}: {told}"])
     return Grid("Claims of the paper", ["claim", "mode", "answer", "from the pairs of runs"], rows,
                 ["yes: better than each of the others, each with p of at most 0.05; no: worse than "
                  "one of them with such a p; unclear: neither."])
 
 
-def ranking_grid(report, block):
-    """The order of the systems beside that of the paper; None if there are no common figures."""
-    found = report.ranking(block)
-    if len(found) < 2:
-        return None
-    labels = {row.variant: row.label for row in report.table(block).rows}
-    rows = [[Text(labels[name]), Text(f"{ours:.1f}"), Text(f"{theirs:.1f}")]
-            for name, ours, theirs in found]
-    return Grid(f"{report.title(block)}: order", ["", "mean rank", "mean rank in the paper"], rows,
+def ranking_grid(block):
+    """The order of the systems beside that of the paper, over the sequences for which both have all
+    figures; None for fewer than two systems.
+
+    The order is that of the means of the ranks within each sequence, so that the sequences count alike.
+    """
+    key, ranks = block.table.figures[0], {}
+    column, sign = FIGURES[key].columns[block.mode][-1].key, 1.0 if FIGURES[key].lower_is_better else -1.0
+    for cells in block.sequences.values():
+        pairs = {cell["label"]: (cell["figures"][column]["median"], cell["papers"][key]) for cell in cells
+                 if cell["papers"][key] is not None and cell["figures"].get(column)}
+        for index in (0, 1) if len(pairs) > 1 else ():
+            order = sorted(pairs, key=lambda label, i=index: sign * pairs[label][i])
+            for rank, label in enumerate(order, 1):
+                ranks.setdefault(label, ([], []))[index].append(rank)
+    means = [(row.label, *map(statistics.fmean, ranks[row.label])) for row in block.table.rows
+             if row.label in ranks]
+    rows = [[label, f"{ours:.1f}", f"{theirs:.1f}"]
+            for label, ours, theirs in sorted(means, key=lambda row: row[1])]
+    return Grid(f"{block.title}: order", ["", "mean rank", "mean rank in the paper"], rows,
                 ["Ranks within each sequence, by the medians; over the sequences for which both "
-                 "have figures."])
+                 "have figures."]) if len(rows) > 1 else None
 
 
 def comparison_grid(found, labels):
@@ -244,10 +233,10 @@ def comparison_grid(found, labels):
     for row in found["rows"]:
         changes = [row["figures"].get(key) for key in COMPARED]
         name, _, level = row["variant"].partition("+")
-        rows.append([Text(labels.get(name, name) + (f" + {level}" if level else "")), Text(row["mode"]),
-                     *(Text(f"{difference_text(change, key)}, {change['verdict']}" if change else DASH)
+        rows.append([labels.get(name, name) + (f" + {level}" if level else ""), row["mode"],
+                     *(f"{difference_text(change, key)}, {change['verdict']}" if change else DASH
                        for key, change in zip(COMPARED, changes)),
-                     Text(f"{row['failed_before']} -> {row['failed_after']} of {row['common']}")])
+                     f"{row['failed_before']} -> {row['failed_after']} of {row['common']}"])
     old, new = (", ".join(map(str, found[key] or ["unknown"])) for key in ("old_git", "new_git"))
     return Grid(f"Differences since {old} (now {new})",
                 ["", "mode", *(FIGURES[key].title for key in COMPARED), "failed runs"], rows,
@@ -276,8 +265,7 @@ def preface(report):
     if report.frames:
         found.append(f"Only {report.frames} images of each sequence were used.")
     if report.is_quick:
-        found.append("This was a quick run, to see whether everything works: its figures mean "
-                     "little.")
+        found.append("This was a quick run, to see whether everything works: its figures mean little.")
     if report.builds():
         found.append(f"Commit of the programs: {', '.join(report.builds())}.")
     return found

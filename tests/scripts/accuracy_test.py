@@ -248,7 +248,7 @@ class AccuracyTest(unittest.TestCase):
     def test_bad_usage(self):
         for arguments, part in ((["--only", "desk,chair"], "--only: 'chair' is unknown"),
                                 (["--only", ""], "--only: '' is unknown"),
-                                (["--jobs", "0"], "--jobs is 0"),
+                                (["--jobs", "0"], "--jobs: is '0'"),
                                 (["--timeout", "nan"], "--timeout"),
                                 (["--accept", "--quick"], "--accept needs all runs of its cases"),
                                 (["--compare", self.cases], "not valid JSON"),
@@ -260,8 +260,8 @@ class AccuracyTest(unittest.TestCase):
     def test_bad_cases(self):
         for old, new, part in (("recorded: desk, first", "rendered: desk, first", "unknown key"),
                                ("recorded: desk, first", "first", "expected one of the keys recorded"),
-                               ("first: [0, 3]", "first: [0, -3]", "cases.desk.first: is '[0, -3]'"),
-                               ("first: [0, 3]", "first: [0, 0]", "different whole numbers"),
+                               ("first: [0, 3]", "first: [0, -3]", "cases.desk.first[1]: is '-3'"),
+                               ("first: [0, 3]", "first: [0, 0]", "expected each entry once"),
                                ("first: [0, 3]", "seeds: [0]", "a recorded sequence has no seed"),
                                ("degradation: late", "degradation: rain", "cases.late.degradation"),
                                ("rendering: room", "rendering: hall", "cases.walk.rendering"),

@@ -36,7 +36,7 @@ class AssemblePage(unittest.TestCase):
         return assemble_page.assemble(self.web, self.web / "three.js", self.web / "controls.js")
 
     def expect_error(self, part):
-        with self.assertRaises(assemble_page.PageError) as caught:
+        with self.assertRaises(assemble_page.InputError) as caught:
             self.assemble()
         self.assertIn(part, str(caught.exception))
 

@@ -34,7 +34,7 @@ class DocsExamplesTest(unittest.TestCase):
         self.assertNotIn("rm a", text)
 
     def test_a_block_without_end_is_an_error(self):
-        with self.assertRaisesRegex(ValueError, "line 2.*no end"):
+        with self.assertRaisesRegex(docs_examples.InputError, "line 2.*no end"):
             docs_examples.program([(pathlib.Path("a.md"), "\n```cpp\nint a;\n")])
 
     def test_no_other_spelling_of_cpp_hides_an_example(self):

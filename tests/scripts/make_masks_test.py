@@ -21,6 +21,7 @@ import fake_slam
 TOP = pathlib.Path(__file__).resolve().parents[2]
 SCRIPT = TOP / "scripts" / "make_masks.py"
 MODULE = pathlib.Path(os.environ.get("HULLSLAM_BIN", TOP / "build" / "release" / "bin")).parent / "python"
+sys.path += [str(MODULE)]
 sys.path.insert(0, str(SCRIPT.parent))
 import make_masks  # noqa: E402
 
@@ -113,41 +114,41 @@ def polygon(line, width=60, height=40):
     return int(words[0]), points, float(words[-1])
 
 
+@unittest.skipUnless((MODULE / "hullslam").is_dir(), "needs HullSLAM's Python module")
 class OutlineTest(unittest.TestCase):
+    def outline_of(self, mask):
+        number, points, score = polygon(make_masks.yolo_text([(3, 0.5, mask)]), *mask.shape[::-1])
+        self.assertEqual((number, score), (3, 0.5))
+        return points
+
     def test_the_outline_of_a_rectangle_is_halfway_between_pixels(self):
-        mask = np.zeros((40, 60))
-        mask[10:20, 15:30] = 1.0
-        outline, area = make_masks.outline_of(mask)
-        np.testing.assert_allclose(outline.min(axis=0), [14.5, 9.5])
-        np.testing.assert_allclose(outline.max(axis=0), [29.5, 19.5])
+        mask = np.zeros((40, 60), bool)
+        mask[10:20, 15:30] = True
+        outline = self.outline_of(mask)
+        np.testing.assert_allclose(outline.min(axis=0), [14.5, 9.5], atol=1e-4)
+        np.testing.assert_allclose(outline.max(axis=0), [29.5, 19.5], atol=1e-4)
         # The corners are cut: a triangle of an eighth of a pixel is missing at each.
-        self.assertAlmostEqual(area, 15 * 10 - 4 / 8)
-        self.assertEqual(len(make_masks.without_straight_points(outline)), 8)
+        self.assertAlmostEqual(make_masks.area_of(outline), 15 * 10 - 4 / 8, delta=1e-2)
+        self.assertEqual(len(outline), 8)
 
     def test_a_circle_keeps_its_area(self):
         y, x = np.mgrid[0:200, 0:300]
-        mask = (x - 140.3) ** 2 + (y - 95.8) ** 2 < 60.0**2
-        _, area = make_masks.outline_of(mask)
-        self.assertAlmostEqual(area / (np.pi * 60.0**2), 1.0, delta=2e-3)
+        outline = self.outline_of((x - 140.3) ** 2 + (y - 95.8) ** 2 < 60.0**2)
+        self.assertAlmostEqual(make_masks.area_of(outline) / (np.pi * 60.0**2), 1.0, delta=2e-3)
 
     def test_the_largest_part_is_taken(self):
-        mask = np.zeros((40, 60))
-        mask[2:6, 2:6] = mask[10:30, 10:30] = 1.0
-        mask[15:18, 15:18] = 0.0  # a hole
-        outline, _ = make_masks.outline_of(mask)
-        np.testing.assert_allclose(outline.min(axis=0), [9.5, 9.5])
+        mask = np.zeros((40, 60), bool)
+        mask[2:6, 2:6] = mask[10:30, 10:30] = True
+        mask[15:18, 15:18] = False  # a hole
+        np.testing.assert_allclose(self.outline_of(mask).min(axis=0), [9.5, 9.5], atol=1e-4)
 
     def test_masks_at_the_border_and_empty_masks(self):
-        mask = np.ones((40, 60))
-        outline, _ = make_masks.outline_of(mask)
-        np.testing.assert_allclose(outline.max(axis=0), [59.5, 39.5])
-        text = make_masks.yolo_text([(3, 0.5, mask)])
-        _, points, _ = polygon(text)
+        points = self.outline_of(np.ones((40, 60), bool))
         self.assertTrue((points >= 0).all() and (points <= [60, 40]).all())
-        self.assertIsNone(make_masks.outline_of(np.zeros((40, 60)))[0])
-        small = np.zeros((40, 60))
-        small[1:4, 1:4] = 1.0
-        self.assertEqual(make_masks.yolo_text([(1, 0.9, np.zeros((40, 60))), (2, 0.9, small)]), "")
+        small = np.zeros((40, 60), bool)
+        small[1:4, 1:4] = True
+        self.assertEqual(make_masks.yolo_text([(1, 0.9, np.zeros((40, 60), bool)), (2, 0.9, small)]), "")
+        self.assertEqual(make_masks.yolo_text([]), "")
 
 
 class TurnTest(unittest.TestCase):

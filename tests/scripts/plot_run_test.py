@@ -140,7 +140,7 @@ class PlotRunTest(unittest.TestCase):
         self.assert_drawn(self.plot_report(losses=[{"from": 0.34, "to": 0.36}]))
 
     def test_overlays_are_chosen_evenly_among_keyframes_with_objects(self):
-        self.assert_refused(self.plot_report("--overlay", "-1"), "--overlay")
+        self.assertIn("--overlay: is '-1'", self.plot_report("--overlay", "-1").stderr)
         drawn = []
         with unittest.mock.patch.object(plot_run, "draw_overlay",
                                         lambda plot, shown, _: drawn.append(shown["time"]) or []):

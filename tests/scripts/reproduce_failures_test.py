@@ -134,7 +134,7 @@ class BadInputTest(TablesTest):
                 (("--compare", self.definitions), ("not valid JSON",)),
                 (("--masks", "none"), ("none: does not exist",)),
                 (("--programs", self.dir), ("no such program",)),
-                (("--seeds", "0"), ("--seeds is 0",)),
+                (("--seeds", "0"), ("--seeds: is '0'",)),
                 (("--timeout", "nan"), ("--timeout",)),
                 (("--definitions", self.dir / "none.yaml"), ("cannot read",))):
             with self.subTest(arguments):
