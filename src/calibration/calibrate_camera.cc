@@ -49,9 +49,12 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
   CameraModel start = given;
   std::vector<CameraParameter> parameters =
       ParametersOf(given, options.choice, problem.has_depth, MedianSpeed(problem, given));
+  if (options.guess) {
+    ExpectNear(*options.guess, parameters);
+  }
   CameraAdjustment free(fixed.problem(), start, parameters);
   free.Solve({});
-  CameraEvidence evidence = MeasureEvidence(free, options.slack);
+  CameraEvidence evidence = MeasureEvidence(free);
   CameraCalibrationResult result{.given = given,
                                  .model = given,
                                  .evidence = evidence,
@@ -61,7 +64,7 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
     parameters = std::move(kept);
     free = CameraAdjustment(fixed.problem(), start, parameters);
     free.Solve({});
-    evidence = MeasureEvidence(free, options.slack);
+    evidence = MeasureEvidence(free);
   };
   if (AgreesWithTrust(free.model(), problem, options)) {
     start = WithFocalLength(given, options.trusted_focal_length);
@@ -70,7 +73,7 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
   }
   // What is not determined is held, so that the rest may become determined or not. Two rounds
   // settle it.
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 2 && !options.guess; ++round) {
     std::vector<CameraParameter> kept = Determined(evidence);
     if (kept.size() == parameters.size()) {
       break;
@@ -92,7 +95,8 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
                 [](const ParameterEvidence& one) { return one.parameter.IsNuisance(); });
   // 4 sigmas for as many numbers: a right camera is practically never changed.
   const auto numbers = static_cast<double>(parameters.size());
-  result.is_changed = result.evidence_ratio > numbers + 4.0 * std::sqrt(2.0 * numbers);
+  result.is_changed =
+      options.guess || result.evidence_ratio > numbers + 4.0 * std::sqrt(2.0 * numbers);
   if (result.is_changed) {
     result.model = free.model();
     result.model.depth_scale = given.depth_scale;

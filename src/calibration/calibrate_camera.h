@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,9 @@ struct CameraCalibrationResult {
 
 struct CameraCalibrationOptions {
   CalibrationChoice choice = {};
-  // Factor on the bounds of what counts as determined. If nothing is known of the given camera,
-  // also an uncertain number is better.
-  double slack = 1.0;
+  // If nothing but a guess is known of the camera, all numbers are calibrated, also uncertain ones,
+  // near this guess (ExpectNear).
+  std::optional<CameraModel> guess = {};
   // The focal length that the user gave, px; 0: none. That of a depth camera is kept if it is right
   // within two standard deviations of the scale of depth (kDepthScaleSigma): the metre of such a
   // camera is its depth's, and the size of a motion is depth over f, so a new f with the old scale

@@ -61,6 +61,10 @@ double CameraParameter::ValueIn(const CameraModel& model) const {
   return 0.0;
 }
 
+double CameraParameter::DeviationIn(const CameraModel& model) const {
+  return prior_steps > 0.0 ? (ValueIn(model) - expected) / (step * prior_steps) : 0.0;
+}
+
 void CameraParameter::Move(double steps, CameraModel& model) const {
   switch (kind) {
     case Kind::kFocalLength: {
@@ -139,9 +143,34 @@ std::vector<CameraParameter> ParametersOf(const CameraModel& model, const Calibr
                           .field = nullptr,
                           .name = kDepthScaleName,
                           .unit = "",
-                          .step = kDepthScaleSigma});
+                          .step = kDepthScaleSigma,
+                          .prior_steps = 1.0,
+                          .expected = 1.0});
   }
   return parameters;
+}
+
+void ExpectNear(const CameraModel& guess, std::vector<CameraParameter>& parameters) {
+  const auto sigma_of = [&](const CameraParameter& parameter) {
+    switch (parameter.kind) {
+      case Kind::kFocalLength:
+        return 0.25 * guess.camera.fx;
+      case Kind::kReadout:
+        return 0.06;
+      case Kind::kDisparityOffset:
+        return 2.0;
+      case Kind::kDepthScale:
+        return kDepthScaleSigma;
+      case Kind::kField:
+        break;
+    }
+    return !parameter.IsCoefficient() ? 0.02 * guess.camera.width
+                                      : (parameter.IsCentring() ? 3.0 : 60.0) * parameter.step;
+  };
+  for (CameraParameter& parameter : parameters) {
+    parameter.prior_steps = sigma_of(parameter) / parameter.step;
+    parameter.expected = parameter.ValueIn(guess);
+  }
 }
 
 }  // namespace hullslam

@@ -57,6 +57,10 @@ struct CameraParameter {
   // The change of the number that moves pixels at the border of the image by about 1 px. All
   // mathematics uses multiples of it.
   double step = 1.0;
+  // What is known of it before: a normal distribution with this standard deviation, in steps. 0:
+  // nothing.
+  double prior_steps = 0.0;
+  double expected = 0.0;
 
   bool IsFocalLength() const { return kind == Kind::kFocalLength; }
   // Whether the number is only there because it is not known exactly (CameraModel::depth_scale).
@@ -69,6 +73,8 @@ struct CameraParameter {
   }
   bool IsCoefficient() const { return kind == Kind::kField && unit.empty(); }  // of the lens
   double ValueIn(const CameraModel& model) const;
+  // How far the number is from what is known before, in standard deviations; 0 if nothing is.
+  double DeviationIn(const CameraModel& model) const;
   // Changes the number by so many steps.
   void Move(double steps, CameraModel& model) const;
 };
@@ -87,5 +93,9 @@ struct CalibrationChoice {
 // median.
 std::vector<CameraParameter> ParametersOf(const CameraModel& model, const CalibrationChoice& choice,
                                           bool has_depth, double speed);
+// Sets what is known of a camera that is only guessed: f within 25 %, the principal point within
+// 2 % of the width of the image, lenses that move its border by less than 60 px, by 3 px if they
+// are Brown's tangential coefficients, 60 ms of readout, and 2 px of disparity.
+void ExpectNear(const CameraModel& guess, std::vector<CameraParameter>& parameters);
 
 }  // namespace hullslam

@@ -77,8 +77,11 @@ CameraAdjustment::CameraAdjustment(CalibrationProblem problem, CameraModel model
 
 double CameraAdjustment::Cost(const CameraModel& model, std::span<const CalibrationView> views,
                               std::span<const Eigen::Vector3d> points) const {
-  const double scale = std::log(model.depth_scale) / kDepthScaleSigma;
-  double cost = 0.5 * scale * scale;
+  double cost = 0.0;
+  for (const CameraParameter& parameter : parameters_) {
+    const double deviation = parameter.DeviationIn(model);
+    cost += 0.5 * deviation * deviation;
+  }
   for (size_t i = 0; i < points.size(); ++i) {
     for (const CalibrationObservation& seen : problem_.observations[i]) {
       const CalibrationView& view = views[seen.view];
@@ -172,10 +175,10 @@ ReducedSystem CameraAdjustment::Reduce(double damping, const std::vector<uint8_t
     }
   }
   for (size_t i = 0; i < parameters_.size(); ++i) {
-    if (parameters_[i].IsNuisance()) {
+    if (const double sigma = parameters_[i].prior_steps; sigma > 0.0) {
       const Eigen::Index row = camera + static_cast<Eigen::Index>(i);
-      sum.hessian(row, row) += 1.0;  // a step is a standard deviation
-      sum.gradient[row] += std::log(model_.depth_scale) / kDepthScaleSigma;
+      sum.hessian(row, row) += 1.0 / (sigma * sigma);
+      sum.gradient[row] += parameters_[i].DeviationIn(model_) / sigma;
     }
   }
   FixFrame(is_left_out, sum.hessian);

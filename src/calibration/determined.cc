@@ -81,7 +81,7 @@ Eigen::MatrixXd JackknifeCovariance(const CameraAdjustment& adjustment) {
 }  // namespace
 
 bool CameraEvidence::IsDistortionDetermined() const {
-  return distortion_sigma >= 0.0 && distortion_sigma <= distortion_bound;
+  return distortion_sigma >= 0.0 && distortion_sigma <= kDistortionBound;
 }
 
 bool CameraEvidence::IsCentringDetermined() const {
@@ -96,9 +96,8 @@ const ParameterEvidence* CameraEvidence::Find(const std::string& name) const {
   return it == parameters.end() ? nullptr : &*it;
 }
 
-CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment, double slack) {
+CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment) {
   CameraEvidence evidence;
-  evidence.distortion_bound = slack * kDistortionBound;
   const auto parameters = adjustment.parameters();
   const auto size = static_cast<Eigen::Index>(parameters.size());
   if (parameters.empty()) {
@@ -125,7 +124,7 @@ CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment, double slack)
                           .value = parameter.ValueIn(adjustment.model()),
                           .bundle_sigma = parameter.step * std::sqrt(covariance(i, i)),
                           .partner = {},
-                          .bound = slack * BoundOf(parameter, adjustment.model())};
+                          .bound = BoundOf(parameter, adjustment.model())};
     one.sigma = std::max(parameter.step * std::sqrt(jackknife(i, i)),
                          evidence.jackknife_factor * one.bundle_sigma);
     for (Eigen::Index k = 0; k < size; ++k) {

@@ -28,7 +28,6 @@ struct CameraEvidence {
   // all coefficients of the lens together, px. They go with one another, so none of them is known
   // as well as this. Negative without coefficients.
   double distortion_sigma = -1.0;
-  double distortion_bound = 1.0;  // px
   bool IsDistortionDetermined() const;
   bool IsCentringDetermined() const;  // both numbers of the principal point
   // How much larger errors are than those of a bundle adjustment whose errors are independent.
@@ -42,7 +41,6 @@ struct CameraEvidence {
 // because errors of neighbouring images go together. So each of ten pieces of the recording is left
 // out in turn: the jackknife's variance is 9 / 10 of the sum of the squared deviations of the ten
 // estimates (Efron 1982).
-// The bounds are multiplied by `slack`.
-CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment, double slack = 1.0);
+CameraEvidence MeasureEvidence(const CameraAdjustment& adjustment);
 
 }  // namespace hullslam

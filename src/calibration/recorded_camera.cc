@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -21,22 +19,25 @@ namespace {
 constexpr size_t kFewestViews = 8;
 constexpr size_t kFewestObservations = 500;
 
-// Objects say nothing about the camera. Without them frames keep what undoes the correction of
-// their shutter.
-SystemOptions OptionsOfRun(SystemOptions options) {
-  options.objects.enabled = false;
-  return options;
+// Whether all numbers of a camera are those of another one within their standard deviations.
+bool IsWithinErrors(const CameraModel& a, const CameraModel& b, const CameraEvidence& evidence) {
+  return std::ranges::all_of(evidence.parameters, [&](const ParameterEvidence& one) {
+    return std::abs(one.parameter.ValueIn(a) - one.parameter.ValueIn(b)) <= one.sigma;
+  });
 }
 
-// SLAM on the first `frames` frames of a recording. Empty if there is no map. Throws the error of
-// the first image if no image can be read.
-CalibrationProblem ProblemOf(const SystemOptions& options, const CameraRecording& recording,
-                             size_t frames, const RecordedCalibrationOptions& calibration,
-                             const std::function<void()>& on_frame) {
+}  // namespace
+
+// Objects say nothing about the camera. Without them frames keep what undoes the correction of
+// their shutter.
+CalibrationProblem RecordedProblem(SystemOptions options, const CameraRecording& recording,
+                                   size_t frames, const Cancellation* cancellation,
+                                   const std::function<void()>& on_frame) {
+  options.objects.enabled = false;
   const Sensor sensor = MakeSensor(options);
   System system(options, PipelineKind::kSequential);
   std::optional<InputError> failure;
-  for (size_t i = 0; i < frames && !IsRequested(calibration.cancellation); ++i) {
+  for (size_t i = 0; i < frames && !IsRequested(cancellation); ++i) {
     std::optional<ImageInput> image;
     try {
       image = recording.load(i, options.camera);
@@ -53,37 +54,16 @@ CalibrationProblem ProblemOf(const SystemOptions& options, const CameraRecording
   if (failure && system.frames().empty()) {
     throw *failure;
   }
-  system.Finish(calibration.cancellation);
+  system.Finish(cancellation);
   const auto map = system.map();
   const CameraModel model = ModelOf(sensor, options.depth.disparity_offset);
   return map == nullptr ? CalibrationProblem()
                         : MakeProblem(*map, sensor, model, system.trajectory());
 }
 
-bool IsEnough(const CalibrationProblem& problem) {
+bool IsEnoughToCalibrate(const CalibrationProblem& problem) {
   return problem.views.size() >= kFewestViews && problem.CountObservations() >= kFewestObservations;
 }
-
-// The largest change of a pixel by a step of the camera, about, px.
-double ChangeOf(const CameraModel& a, const CameraModel& b,
-                std::span<const CameraParameter> parameters) {
-  double change = 0.0;
-  for (const CameraParameter& parameter : parameters) {
-    change =
-        std::max(change, std::abs(parameter.ValueIn(a) - parameter.ValueIn(b)) / parameter.step);
-  }
-  return change;
-}
-
-std::vector<CameraParameter> ParametersIn(const CameraEvidence& evidence) {
-  std::vector<CameraParameter> parameters;
-  for (const ParameterEvidence& one : evidence.parameters) {
-    parameters.push_back(one.parameter);
-  }
-  return parameters;
-}
-
-}  // namespace
 
 void ApplyModel(const CameraModel& model, SystemOptions& options) {
   options.camera = model.camera;
@@ -95,8 +75,6 @@ void ApplyModel(const CameraModel& model, SystemOptions& options) {
 RecordedCalibration CalibrateFromRecordings(SystemOptions options,
                                             std::span<const CameraRecording> recordings,
                                             const RecordedCalibrationOptions& calibration) {
-  constexpr double kSettled = 0.2;  // px
-  options = OptionsOfRun(std::move(options));
   CameraModel model = ModelOf(MakeSensor(options), options.depth.disparity_offset);
   const CameraModel given = model;
   size_t frames = 0;
@@ -109,13 +87,14 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
     CalibrationProblem problem;
     size_t done = 0;
     for (const CameraRecording& recording : recordings) {
-      problem.Append(ProblemOf(options, recording, recording.frames, calibration, [&] {
-        if (calibration.on_frame) {
-          calibration.on_frame(pass, ++done, frames);
-        }
-      }));
+      problem.Append(
+          RecordedProblem(options, recording, recording.frames, calibration.cancellation, [&] {
+            if (calibration.on_frame) {
+              calibration.on_frame(pass, ++done, frames);
+            }
+          }));
     }
-    if (!IsEnough(problem)) {
+    if (!IsEnoughToCalibrate(problem)) {
       throw InputError(fmt::format(
           "a map of {} views and {} observations is too small to calibrate a camera, expected at "
           "least {} and {}: film for longer, and move the camera",
@@ -124,10 +103,10 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
     calibrated.result = CalibrateCamera(problem, model, calibration.camera);
     calibrated.problem = std::move(problem);
     calibrated.passes = pass;
-    const double change =
-        ChangeOf(model, calibrated.result.model, ParametersIn(calibrated.result.evidence));
+    const bool is_settled =
+        IsWithinErrors(model, calibrated.result.model, calibrated.result.evidence);
     model = calibrated.result.model;
-    if (IsRequested(calibration.cancellation) || change < kSettled) {
+    if (is_settled || IsRequested(calibration.cancellation)) {
       break;
     }
   }
@@ -149,56 +128,6 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
     }
   }
   return calibrated;
-}
-
-PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recording,
-                          const RecordedCalibrationOptions& calibration) {
-  constexpr size_t kFrames = 150;
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  options = OptionsOfRun(std::move(options));
-  options.readout_time = 0.0;
-  options.depth.disparity_offset = 0.0;
-  const PinholeCamera sized{
-      .width = options.camera.width, .height = options.camera.height, .bf = options.camera.bf};
-  const size_t frames = std::min(kFrames, recording.frames);
-  size_t done = 0;
-  double most = 0.0;
-  std::optional<PinholeCamera> best;
-  constexpr std::array kFields = {45.0, 55.0, 65.0, 75.0, 87.0, 100.0};  // degrees
-  for (const double field : kFields) {
-    PinholeCamera& camera = options.camera;
-    camera = sized;
-    camera.cx = 0.5 * (camera.width - 1);
-    camera.cy = 0.5 * (camera.height - 1);
-    camera.fx = camera.fy = 0.5 * camera.width / std::tan(0.5 * field * kDegree);
-    const CalibrationProblem problem = ProblemOf(options, recording, frames, calibration, [&] {
-      if (calibration.on_frame) {
-        calibration.on_frame(0, ++done, kFields.size() * frames);
-      }
-    });
-    if (!IsEnough(problem) || IsRequested(calibration.cancellation)) {
-      continue;
-    }
-    const CameraModel model = ModelOf(MakeSensor(options), 0.0);
-    CameraAdjustment adjustment(
-        problem, model,
-        ParametersOf(model, {.principal_point = false, .readout = false, .disparity = false},
-                     problem.has_depth, 0.0));
-    adjustment.Solve({});
-    // A wrong camera loses landmarks, and the errors of those that are left are larger.
-    const double score = static_cast<double>(problem.CountObservations()) /
-                         std::max(0.1, adjustment.AtMinimum().variance_factor);
-    if (score > most) {
-      most = score;
-      best = adjustment.model().camera;
-    }
-  }
-  if (!best) {
-    throw InputError(
-        "no map can be made of the first images with any field of view from 45 to 100 degrees, "
-        "expected a camera that moves sideways past things at different distances");
-  }
-  return *best;
 }
 
 }  // namespace hullslam

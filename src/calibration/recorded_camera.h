@@ -47,13 +47,12 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
                                             std::span<const CameraRecording> recordings,
                                             const RecordedCalibrationOptions& calibration);
 
-// The camera of `options` with the focal length that fits the first frames of a recording best. Of
-// the intrinsics only the size of the image is used. SLAM runs on these frames with fields of view
-// from 45 to 100 degrees and without distortion, and the focal length is calibrated from each. The
-// one with which most points are seen in most images wins. Throws InputError if SLAM fails with all
-// of them.
-PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recording,
-                          const RecordedCalibrationOptions& calibration);
+// SLAM without objects on the first `frames` frames of a recording. Empty if there is no map.
+// Throws the error of the first image if no image can be read.
+CalibrationProblem RecordedProblem(SystemOptions options, const CameraRecording& recording,
+                                   size_t frames, const Cancellation* cancellation,
+                                   const std::function<void()>& on_frame);
+bool IsEnoughToCalibrate(const CalibrationProblem& problem);
 
 // Sets the camera of a run.
 void ApplyModel(const CameraModel& model, SystemOptions& options);

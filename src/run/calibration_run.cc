@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "calibration/guess_camera.h"
+#include "calibration/map_problem.h"
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
@@ -97,10 +99,11 @@ CalibratedRun RunCalibration(const CalibrationRun& run) {
     });
   };
   if (run.is_unknown) {
-    constexpr double kSlack = 8.0;
-    calibration.camera.slack = kSlack;
+    // A guess needs more runs than a camera that is nearly right.
+    calibration.max_passes *= 2;
     options.camera = GuessCamera(options, recordings.front(), calibration);
     options.readout_time = 0.0;
+    calibration.camera.guess = ModelOf(MakeSensor(options), options.depth.disparity_offset);
   } else {
     calibration.camera.trusted_focal_length = options.camera.fx;
   }
