@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "calibration/guess_camera.h"
-#include "calibration/map_problem.h"
+#include "calibration/recorded_camera.h"
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"
 #include "run/messages.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/motion_advice.h"
+#include "calibration/determined.h"
 #include "calibration/recorded_camera.h"
 #include "run/dataset_arguments.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "calibration/determined.h"
 #include "calibration/made_recording.h"
-#include "calibration/motion_advice.h"
 
 namespace hullslam {
 namespace {

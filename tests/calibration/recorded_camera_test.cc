@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibration/map_problem.h"
+#include "calibration/recorded_camera.h"
 
 #include <gtest/gtest.h>
 
