@@ -32,6 +32,9 @@ struct CameraEvidence {
   bool IsCentringDetermined() const;  // both numbers of the principal point
   // How much larger errors are than those of a bundle adjustment whose errors are independent.
   double jackknife_factor = 1.0;
+  // Whether pieces of the recording contradict each other, far beyond what neighbouring errors
+  // explain (factors of 1.4 to 4.4 are usual): no single camera fits, or the map is wrong.
+  bool IsContradictory() const { return jackknife_factor > 6.0; }
   double variance_factor = 1.0;  // CameraAdjustment::Minimum
 
   const ParameterEvidence* Find(const std::string& name) const;

@@ -180,6 +180,14 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
       break;
     }
   }
+  if (calibrated.result.evidence.IsContradictory()) {
+    throw InputError(fmt::format(
+        "no camera fits all parts of the recording: their numbers differ by {:.0f} times what "
+        "chance explains, expected no zoom, no autofocus, no stabilisation, and a motion from "
+        "which "
+        "a map can be made",
+        calibrated.result.evidence.jackknife_factor));
+  }
   // Also what an earlier pass has changed is calibrated.
   CameraCalibrationResult& result = calibrated.result;
   result.given = given;

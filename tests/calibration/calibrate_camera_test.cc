@@ -109,6 +109,26 @@ CameraModel Wrong(CameraModel model) {
   return model;
 }
 
+TEST(CalibrateCamera, TwoCamerasAreAContradictionAndStandingStillIsNone) {
+  MadeRecordingOptions options = Options(kHandHeld, false, 3);
+  const CameraModel first = options.truth;
+  CalibrationProblem problem = MadeRecording(options).problem();
+  options.truth.camera.fx = options.truth.camera.fy = 900.0;
+  options.truth.readout_time = 0.0;
+  options.seed = 4;
+  problem.Append(MadeRecording(options).problem());
+  CameraAdjustment adjustment(problem, first, ParametersOf(first, {}, options.has_depth, 300.0));
+  adjustment.Solve({});
+  EXPECT_TRUE(MeasureEvidence(adjustment).IsContradictory())
+      << MeasureEvidence(adjustment).jackknife_factor;
+  for (const MadeMotion& motion : {kRollOnly, kNone, kShiftAndRoll, kAhead, kPan}) {
+    for (const bool has_depth : {false, true}) {
+      EXPECT_FALSE(EvidenceOf(Options(motion, has_depth, 0)).IsContradictory())
+          << EvidenceOf(Options(motion, has_depth, 0)).jackknife_factor;
+    }
+  }
+}
+
 // The principal point and the tangential distortion replace one another.
 TEST(CalibrateCamera, TakesTheAxisOfTheLensAsAWholeOrNotAtAll) {
   MadeRecordingOptions options = Options(kHandHeld, true, 0);
