@@ -119,14 +119,6 @@ std::vector<FramePaths> ReadImages(const fs::path& camera, std::vector<std::stri
   return TakeFrames(list, std::move(frames), warnings);
 }
 
-std::vector<double> StampsOf(const std::vector<FramePaths>& frames) {
-  std::vector<double> stamps;
-  for (const FramePaths& frame : frames) {
-    stamps.push_back(frame.timestamp);
-  }
-  return stamps;
-}
-
 void PairImages(const fs::path& root, const std::vector<FramePaths>& left, double frames_per_second,
                 ImageSequence& sequence) {
   const std::vector<FramePaths> right = ReadImages(root / "cam1", sequence.warnings);

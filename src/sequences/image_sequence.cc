@@ -151,9 +151,9 @@ std::optional<Trajectory> TryGroundtruth(const ImageSequence& sequence,
   }
 }
 
-std::vector<double> StampsOf(const ImageSequence& sequence) {
+std::vector<double> StampsOf(std::span<const FramePaths> frames) {
   std::vector<double> stamps;
-  for (const FramePaths& frame : sequence.frames) {
+  for (const FramePaths& frame : frames) {
     stamps.push_back(frame.timestamp);
   }
   return stamps;

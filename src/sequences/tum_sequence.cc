@@ -45,14 +45,6 @@ std::vector<FramePaths> ReadImageList(const fs::path& folder, const std::string&
   return TakeFrames(path, std::move(images), warnings);
 }
 
-std::vector<double> StampsOf(const std::vector<FramePaths>& images) {
-  std::vector<double> stamps;
-  for (const FramePaths& image : images) {
-    stamps.push_back(image.timestamp);
-  }
-  return stamps;
-}
-
 void CheckFolder(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {

@@ -93,7 +93,7 @@ TEST(TryGroundtruth, WarnsOfAFileThatCannotBeUsed) {
 TEST(StampsOf, AreThoseOfTheFrames) {
   ImageSequence sequence;
   sequence.frames = {{1.5, "a.png"}, {2.5, "b.png"}};
-  EXPECT_EQ(StampsOf(sequence), (std::vector<double>{1.5, 2.5}));
+  EXPECT_EQ(StampsOf(sequence.frames), (std::vector<double>{1.5, 2.5}));
 }
 
 TEST(AddWarp, StepsAreDoneInTheirOrder) {

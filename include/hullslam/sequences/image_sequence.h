@@ -105,8 +105,8 @@ Trajectory AsRead(const ImageSequence& sequence, Trajectory poses);
 // The inverse of AsRead().
 Trajectory AsLoaded(const ImageSequence& sequence, Trajectory poses);
 
-// The time stamps of the frames, s.
-std::vector<double> StampsOf(const ImageSequence& sequence);
+// The time stamps of frames, s.
+std::vector<double> StampsOf(std::span<const FramePaths> frames);
 
 // The true trajectory of the camera of the images that the sequence gives, from the field that is
 // set, which belongs to the camera as read; absent without ground truth. The file may have

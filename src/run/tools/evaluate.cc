@@ -130,7 +130,7 @@ std::vector<size_t> ReadSightings(const std::filesystem::path& folder,
   const ImageSequence sequence = OpenTumSequence(folder);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks({folder / "masks", "", camera.width, camera.height}, frames);
-  return CountAllSightings(truths, camera, groundtruth, run, StampsOf(sequence),
+  return CountAllSightings(truths, camera, groundtruth, run, StampsOf(sequence.frames),
                            [&](size_t frame) { return source->Read(frames[frame]).masks; });
 }
 

@@ -93,7 +93,7 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
 // Chooses the frames to use. Throws InputError if no frame has a pose.
 ChosenViews ChooseMappedViews(const MapObjectsArguments& arguments, const ImageSequence& sequence,
                               const Trajectory& poses, const SequenceMasks& masks) {
-  ChosenViews chosen = ChooseViews(StampsOf(sequence), poses, kMaxGapOfPoses, arguments.choice,
+  ChosenViews chosen = ChooseViews(StampsOf(sequence.frames), poses, kMaxGapOfPoses, arguments.choice,
                                    [&](size_t frame) { return masks.Read(frame); });
   if (chosen.views.empty()) {
     throw InputError(
