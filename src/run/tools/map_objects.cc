@@ -93,8 +93,9 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
 // Chooses the frames to use. Throws InputError if no frame has a pose.
 ChosenViews ChooseMappedViews(const MapObjectsArguments& arguments, const ImageSequence& sequence,
                               const Trajectory& poses, const SequenceMasks& masks) {
-  ChosenViews chosen = ChooseViews(StampsOf(sequence.frames), poses, kMaxGapOfPoses, arguments.choice,
-                                   [&](size_t frame) { return masks.Read(frame); });
+  ChosenViews chosen =
+      ChooseViews(StampsOf(sequence.frames), poses, kMaxGapOfPoses, arguments.choice,
+                  [&](size_t frame) { return masks.Read(frame); });
   if (chosen.views.empty()) {
     throw InputError(
         fmt::format("{}: no frame of {} has a pose, expected poses before and after a frame "
