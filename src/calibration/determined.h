@@ -33,8 +33,8 @@ struct CameraEvidence {
   // How much larger errors are than those of a bundle adjustment whose errors are independent.
   double jackknife_factor = 1.0;
   // Whether pieces of the recording contradict each other, far beyond what neighbouring errors
-  // explain (factors of 1.4 to 4.4 are usual): no single camera fits, or the map is wrong.
-  bool IsContradictory() const { return jackknife_factor > 6.0; }
+  // explain (factors of 1.4 to 5.6 are usual): no single camera fits, or the map is wrong.
+  bool IsContradictory() const { return jackknife_factor > 8.0; }
   double variance_factor = 1.0;  // CameraAdjustment::Minimum
 
   const ParameterEvidence* Find(const std::string& name) const;

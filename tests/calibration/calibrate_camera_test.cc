@@ -114,6 +114,8 @@ TEST(CalibrateCamera, TwoCamerasAreAContradictionAndStandingStillIsNone) {
   const CameraModel first = options.truth;
   CalibrationProblem problem = MadeRecording(options).problem();
   options.truth.camera.fx = options.truth.camera.fy = 900.0;
+  options.truth.camera.cx += 60.0;
+  options.truth.camera.k1 = 0.3;
   options.truth.readout_time = 0.0;
   options.seed = 4;
   problem.Append(MadeRecording(options).problem());
