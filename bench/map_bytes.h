@@ -9,7 +9,6 @@
 #include "hullslam/map/map.h"
 
 namespace hullslam {
-
 namespace bytes_internal {
 
 constexpr size_t kOverhead = 8;  // that the allocator needs per block

@@ -13,7 +13,6 @@
 #include "hullslam/util/id.h"
 
 namespace hullslam::python {
-
 namespace py = pybind11;
 
 // Pixels of a numpy array. `image` does not own them, so `array` must live as long as `image`. It

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "bags/decompress.h"
 
 #include <bzlib.h>
@@ -16,7 +15,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 // The result of one call of a decompressor.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "bow/vocabulary_builder.h"
 
 #define XXH_INLINE_ALL

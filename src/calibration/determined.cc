@@ -81,8 +81,6 @@ Eigen::MatrixXd JackknifeCovariance(const CameraAdjustment& adjustment) {
   return (count - 1.0) / count * deviations * deviations.transpose();
 }
 
-using Kind = CameraParameter::Kind;
-
 constexpr double kLittleTurn = 0.2;  // rad
 constexpr double kLittleWay = 0.05;
 

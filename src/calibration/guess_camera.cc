@@ -287,7 +287,10 @@ PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recordin
             calibration.on_frame(0, ++done, kFields.size() * frames);
           }
         });
-    if (!IsEnoughToCalibrate(problem) || IsRequested(calibration.cancellation)) {
+    if (IsRequested(calibration.cancellation)) {
+      return camera;
+    }
+    if (!IsEnoughToCalibrate(problem)) {
       continue;
     }
     const Fit fit = FitOf(problem, ModelOf(MakeSensor(options), 0.0));

@@ -35,8 +35,8 @@ void SetDivisionModel(double distortion, PinholeCamera& camera);
 // intrinsics only the size of the image is used. The distortion is estimated from pairs of images
 // all over the recording (RadialDistortionOf). Then SLAM runs on the first frames with this
 // distortion and fields of view from 45 to 100 degrees, and the lens is calibrated from each. The
-// one with which most points are seen in most images, with the smallest errors, wins. Throws
-// InputError if SLAM fails with all of them.
+// one with which most points are seen in most images, with the smallest errors, wins. Any of
+// them if it is cancelled. Throws InputError if SLAM fails with all of them.
 PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recording,
                           const RecordedCalibrationOptions& calibration);
 

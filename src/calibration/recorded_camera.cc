@@ -164,6 +164,9 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
             }
           }));
     }
+    if (IsRequested(calibration.cancellation)) {
+      return calibrated;
+    }
     if (!IsEnoughToCalibrate(problem)) {
       throw InputError(fmt::format(
           "a map of {} views and {} observations is too small to calibrate a camera, expected at "
@@ -176,16 +179,14 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
     const bool is_settled =
         IsWithinErrors(model, calibrated.result.model, calibrated.result.evidence);
     model = calibrated.result.model;
-    if (is_settled || IsRequested(calibration.cancellation)) {
+    if (is_settled) {
       break;
     }
   }
   if (calibrated.result.evidence.IsContradictory()) {
     throw InputError(fmt::format(
         "no camera fits all parts of the recording: their numbers differ by {:.0f} times what "
-        "chance explains, expected no zoom, no autofocus, no stabilisation, and a motion from "
-        "which "
-        "a map can be made",
+        "chance explains, expected one camera without zoom, autofocus and stabilisation",
         calibrated.result.evidence.jackknife_factor));
   }
   // Also what an earlier pass has changed is calibrated.

@@ -45,8 +45,8 @@ struct RecordedCalibration {
 
 // Calibrates the camera of `options` from recordings: runs SLAM on them, calibrates, and begins
 // again with the camera that was found, until it does not change any more, because a better camera
-// finds more landmarks. Throws InputError if no recording gives enough views, and for what
-// System::Track refuses.
+// finds more landmarks. Without a result if it is cancelled. Throws InputError if no recording
+// gives enough views or if its pieces contradict each other, and for what System::Track refuses.
 RecordedCalibration CalibrateFromRecordings(SystemOptions options,
                                             std::span<const CameraRecording> recordings,
                                             const RecordedCalibrationOptions& calibration);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "camera/wide_lens.h"
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 // Where a lens has no image of a ray: outside of any image.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "costs/residual_kind.h"
 
 #include <utility>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "hullslam/eval/ate.h"
 
 #include <fmt/format.h>

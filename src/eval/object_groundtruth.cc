@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "eval/object_groundtruth.h"
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 Eigen::Vector3d LongestFirst(Eigen::Vector3d axes) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "exports/export_input.h"
 
 #include <fmt/format.h>

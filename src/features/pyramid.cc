@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "features/pyramid.h"
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include "util/function_clones.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kOne = 256;  // the weights are in units of 1 / kOne

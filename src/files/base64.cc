@@ -7,7 +7,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr std::string_view kDigits =

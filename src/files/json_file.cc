@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/json_file.h"
 
 #include <fmt/format.h>
@@ -16,7 +15,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 using Json = nlohmann::json;

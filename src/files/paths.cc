@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/paths.h"
 
 #include <dlfcn.h>
@@ -15,7 +14,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace fs = std::filesystem;
 
 fs::path CanonicalPath(const fs::path& path) {

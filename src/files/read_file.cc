@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/read_file.h"
 
 #include <fcntl.h>
@@ -18,7 +17,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/staged_file.h"
 
 #include <fcntl.h>
@@ -18,7 +17,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

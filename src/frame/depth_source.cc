@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/depth_source.h"
 
 #include <fmt/format.h>
@@ -16,7 +15,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr double kReach = 3.0;  // px at the level of the keypoint; the circle of FAST

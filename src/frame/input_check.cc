@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/input_check.h"
 
 #include <fmt/format.h>
@@ -14,7 +13,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kMostBits = 50;        // of a match that counts here

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/stereo_matcher.h"
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 // The constants are those of ORB-SLAM2.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "geometry/polygon.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -14,7 +13,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "live/http_access.h"
 
 #include <arpa/inet.h>
@@ -12,7 +11,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr std::string_view kScheme = "http://";

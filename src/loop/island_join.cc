@@ -23,7 +23,6 @@
 #include "places/wide_matches.h"
 
 namespace hullslam {
-
 namespace {
 
 // The largest share of depth samples of a join that the other end sees past.

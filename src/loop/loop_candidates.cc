@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "loop/loop_candidates.h"
 
 #include <algorithm>
@@ -13,7 +12,6 @@
 #include "util/id_set.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "loop/loop_correction.h"
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "util/lists.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph

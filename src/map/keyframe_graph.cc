@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "map/keyframe_graph.h"
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include "util/lists.h"
 
 namespace hullslam {
-
 namespace {
 
 void Insert(std::vector<KeyframeId>& sorted, KeyframeId id) {

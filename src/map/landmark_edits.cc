@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "map/landmark_edits.h"
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include "util/function_clones.h"
 
 namespace hullslam {
-
 namespace {
 
 HULLSLAM_FUNCTION_CLONES

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "mapping/culling.h"
 
 #include <Eigen/Core>
@@ -22,7 +21,6 @@
 #include "util/id_set.h"
 
 namespace hullslam {
-
 namespace {
 
 // A static landmark is contradicted by mistake in at most 2.5 % of the keyframes (one side of the

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/association.h"
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include "util/lists.h"
 
 namespace hullslam {
-
 namespace {
 
 // Number of common landmarks over the number of landmarks of the one that has fewer; 0 for few

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/object_extents.h"
 
 #include <ceres/autodiff_cost_function.h>
@@ -20,7 +19,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kMinPlanes = 30;    // for nine unknowns; neighbouring planes are nearly equal

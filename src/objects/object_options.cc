@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "hullslam/objects/object_options.h"
 
 #include <string>
@@ -10,7 +9,6 @@
 #include "objects/start_method.h"
 
 namespace hullslam {
-
 namespace {
 
 // The keys that refinement, joint pose estimation and bundle adjustment have.

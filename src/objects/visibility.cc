@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/visibility.h"
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "optim/bundle_adjustment.h"
 
 #include <ceres/loss_function.h>
@@ -27,7 +26,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 using internal::Supervision;

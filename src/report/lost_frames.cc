@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "report/lost_frames.h"
 
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 TrackingFailure ReasonOf(const FrameNote& note) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "results/json_text.h"
 
 #include <fmt/format.h>

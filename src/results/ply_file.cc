@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "results/ply_file.h"
 
 #include <fmt/format.h>
@@ -13,7 +12,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kMostBytes = 2'000'000'000;

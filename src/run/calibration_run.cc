@@ -14,6 +14,7 @@
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
+#include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
 #include "settings/camera_file.h"
@@ -66,7 +67,7 @@ void ChooseAnyFieldOfView(const Dataset& dataset, DatasetChoices& choices) {
   }
 }
 
-CalibratedRun RunCalibration(const CalibrationRun& run) {
+std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
   std::vector<OpenedDataset> opened = OpenAll(run);
   SystemOptions options = opened.front().settings.options;
   options.vocabulary = ChooseVocabulary(run.vocabulary, run.is_quiet);
@@ -111,6 +112,10 @@ CalibratedRun RunCalibration(const CalibrationRun& run) {
   calibrated.calibration = CalibrateFromRecordings(options, recordings, calibration);
   if (progress) {
     progress->Clear();
+  }
+  if (IsInterrupted()) {
+    PrintFailure("the program was interrupted; nothing was written");
+    return std::nullopt;
   }
   calibrated.options = std::move(options);
   ApplyModel(calibrated.calibration.result.model, calibrated.options);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,10 @@ struct CalibratedRun {
   std::vector<std::string> sequences;
 };
 
-// Runs SLAM on the sequences and calibrates their camera. Shows the progress. Throws InputError for
-// bad input, for cameras of different sizes, and if SLAM finds too little.
-CalibratedRun RunCalibration(const CalibrationRun& run);
+// Runs SLAM on the sequences and calibrates their camera. Shows the progress. Null, with a message,
+// if it is interrupted. Throws InputError for bad input, for cameras of different sizes, and if
+// SLAM finds too little.
+std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run);
 
 // Prints a table of the numbers of the camera, and which motion would determine the others.
 void PrintCalibration(const CalibratedRun& calibrated);

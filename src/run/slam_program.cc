@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,14 +33,14 @@ bool Parse(CLI::App& app, int argc, char** argv) {
 }
 
 // Calibrates the camera on the images of the run, and adds its numbers to the settings: those of
-// --set that the user gives come after them.
-void SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoices& choices) {
+// --set that the user gives come after them. False if it is interrupted.
+bool SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoices& choices) {
   constexpr size_t kFrames = 1200;
   const bool is_unknown = arguments.settings.empty();
   if (is_unknown) {
     ChooseAnyFieldOfView(dataset, choices);
   }
-  const CalibratedRun calibrated =
+  const std::optional<CalibratedRun> calibrated =
       RunCalibration({.sequences = {arguments.sequence},
                       .any = {.sensor = arguments.sensor, .choices = choices},
                       .settings = arguments.settings,
@@ -49,18 +50,24 @@ void SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoic
                       .is_unknown = is_unknown,
                       .max_frames = kFrames,
                       .is_quiet = arguments.quiet});
-  if (!arguments.quiet) {
-    PrintCalibration(calibrated);
+  if (!calibrated) {
+    return false;
   }
-  std::vector<std::string> overrides = OverridesOf(calibrated.options);
+  if (!arguments.quiet) {
+    PrintCalibration(*calibrated);
+  }
+  std::vector<std::string> overrides = OverridesOf(calibrated->options);
   overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
   arguments.overrides = std::move(overrides);
+  return true;
 }
 
 int RunOnDataset(const Dataset& dataset, RunArguments arguments, DatasetChoices choices) {
   if (arguments.self_calibrate) {
     CatchInterrupts();
-    SelfCalibrate(dataset, arguments, choices);
+    if (!SelfCalibrate(dataset, arguments, choices)) {
+      return kFailed;
+    }
   }
   OpenedDataset opened = OpenDatasetLoudly(dataset, {.path = arguments.sequence,
                                                      .sensor = arguments.sensor,

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "scene/question.h"
 
 #include <fmt/format.h>
@@ -13,7 +12,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 bool IsInWord(char c) { return static_cast<unsigned char>(c) >= 0x80 || IsDigit(c) || IsLetter(c); }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "segmentation/candidate.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace hullslam {
-
 namespace {
 
 double Overlap(const Candidate& a, const Candidate& b) {

@@ -19,7 +19,6 @@
 #include "segmentation/network_protocol.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

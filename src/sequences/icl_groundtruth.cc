@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/icl_groundtruth.h"
 
 #include <fmt/format.h>

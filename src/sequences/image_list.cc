@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/image_list.h"
 
 #include <fmt/format.h>
@@ -12,7 +11,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/stereo_pairing.h"
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 // The camera may move by a twentieth of its way between two images, a pixel or two.

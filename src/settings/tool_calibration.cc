@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "settings/tool_calibration.h"
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr const char* kRightFromLeft = "T_cn_cnm1";

@@ -7,7 +7,6 @@
 #include "map/islands.h"
 
 namespace hullslam {
-
 namespace {
 
 // A pose in the final map is wrong if it finds a smaller share of the landmarks that tracking

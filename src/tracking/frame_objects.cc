@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/frame_objects.h"
 
 #include <algorithm>
@@ -15,7 +14,6 @@
 #include "util/lists.h"
 
 namespace hullslam {
-
 namespace {
 
 Rigid3 RightCamera(const Sensor& sensor, Rigid3 cam_from_world) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/last_frame.h"
 
 #include <cmath>
@@ -10,7 +9,6 @@
 #include "util/id_set.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr double kMaxExtrapolation = 4.0;  // time step over the duration of the measured motion

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/local_map_tracking.h"
 
 #include <algorithm>
@@ -17,7 +16,6 @@
 #include "util/id_set.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kNeighbours = 10;

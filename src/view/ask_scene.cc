@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/ask_scene.h"
 
 #include <fmt/format.h>
@@ -25,7 +24,6 @@
 #include "view/view_of_run.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kTile = 220;  // px, of the longer side of a cut-out

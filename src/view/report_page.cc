@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/report_page.h"
 
 #include "hullslam/util/check.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/view_message.h"
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 void AppendWord(std::string& bytes, uint32_t word) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "bags/decompress.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 const std::map<std::string, Compression> kNames = {{"none", Compression::kNone},

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "bags/message_fields.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "support/expect_error.h"
 
 namespace hullslam {
-
 namespace {
 
 using namespace std::string_literals;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "bow/vocabulary_builder.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "support/made_vocabulary.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(VocabularyLayout, PartsFollowEachOther) {

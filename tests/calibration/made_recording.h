@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "calibration/camera_problem.h"
 #include "hullslam/geometry/rigid3.h"
+#include "support/fisheye_camera.h"
 
 namespace hullslam {
 
@@ -19,6 +21,14 @@ struct MadeMotion {
   Eigen::Vector3d way = {0.5, 0.3, 0.4};   // m, in x (right), y (down), z (forward)
   Eigen::Vector3d turn = {0.3, 0.4, 0.3};  // rad, about x, y, z
 };
+
+inline const MadeMotion kHandHeld;
+inline const MadeMotion kRollOnly{.way = Eigen::Vector3d::Zero(), .turn = {0.0, 0.0, 0.5}};
+inline const MadeMotion kPan{.way = Eigen::Vector3d::Zero(), .turn = {0.3, 0.4, 0.0}};
+inline const MadeMotion kShiftAndRoll{.way = {0.5, 0.3, 0.4}, .turn = {0.0, 0.0, 0.5}};
+inline const MadeMotion kAhead{.way = {0.0, 0.0, 1.0}, .turn = Eigen::Vector3d::Zero()};
+inline const MadeMotion kAlongPlane{.way = {0.5, 0.3, 0.0}, .turn = Eigen::Vector3d::Zero()};
+inline const MadeMotion kNone{.way = Eigen::Vector3d::Zero(), .turn = Eigen::Vector3d::Zero()};
 
 struct MadeRecordingOptions {
   MadeMotion motion;
@@ -42,6 +52,32 @@ inline CameraModel MadeCamera() {
   model.camera.k2 = 0.05;
   model.camera.bf = 40.0;
   return model;
+}
+
+// 40 images and 300 points of a rolling shutter of 20 ms.
+inline MadeRecordingOptions ShortRecording(const MadeMotion& motion, bool has_depth,
+                                           uint32_t seed) {
+  MadeRecordingOptions options{.motion = motion, .truth = MadeCamera(), .has_depth = has_depth};
+  options.truth.readout_time = 0.02;
+  options.views = 40;
+  options.points = 300;
+  options.seed = seed;
+  return options;
+}
+
+// The lenses of a rolling shutter that moves.
+inline std::vector<CameraModel> MadeCameraModels() {
+  std::vector<CameraModel> models;
+  for (const PinholeCamera& camera :
+       {MadeCamera().camera, FisheyeCamera(), DoubleSphereCamera(), ExtendedUnifiedCamera()}) {
+    CameraModel& model = models.emplace_back();
+    model.camera = camera;
+    model.camera.bf = 40.0;
+    model.readout_time = 0.02;
+    model.disparity_offset = 0.3;
+    model.depth_scale = 1.01;
+  }
+  return models;
 }
 
 // Exact observations of made points with noise; the motion is smooth, so the velocities are exact.

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calibration/made_recording.h"
-#include "support/fisheye_camera.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
@@ -36,40 +35,10 @@ TEST(RawResidual, HasTheValueThatIsComputedByHand) {
   EXPECT_TRUE(std::isinf(residual.At(model, kStill, seen, {0.4, 0.2, -2.0}).x()));
 }
 
-// The middle row is exposed at the time of the pose, the top row half of the readout before.
-TEST(RawResidual, ARowSeesThePointWhereItIsAtItsExposure) {
-  CameraModel model = MadeCamera();
-  model.readout_time = 0.02;
-  const PointVelocity velocity{.angular = {0.1, -0.2, 0.3}, .linear = {0.5, -0.4, 0.2}};
-  EXPECT_EQ(model.ExposureOf({100.0, 240.0}), 0.0);
-  EXPECT_NEAR(model.ExposureOf({100.0, 0.0}), -0.01, 1e-15);
-  const Eigen::Vector3d point(0.3, -0.8, 2.0);
-  // x(t) = Exp(t w) x + t v, as in frame/rolling_shutter.cc, to the second order.
-  const double seconds = -0.008;
-  const Eigen::Vector3d exact =
-      ExpSo3(seconds * velocity.angular) * point + seconds * velocity.linear;
-  EXPECT_LT((MovedPoint(point, velocity, seconds) - exact).norm(), 1e-5);
-}
-
-// The lenses of a rolling shutter that moves.
-std::vector<CameraModel> Models() {
-  std::vector<CameraModel> models;
-  for (const PinholeCamera& camera :
-       {MadeCamera().camera, FisheyeCamera(), DoubleSphereCamera(), ExtendedUnifiedCamera()}) {
-    CameraModel& model = models.emplace_back();
-    model.camera = camera;
-    model.camera.bf = 40.0;
-    model.readout_time = 0.02;
-    model.disparity_offset = 0.3;
-    model.depth_scale = 1.01;
-  }
-  return models;
-}
-
 TEST(RawResidual, TheDerivativeByThePointIsThatOfTheNumbers) {
   RandomGeometry random(1);
   const RawResidual residual{.disparity_sigma = 0.7};
-  for (const CameraModel& model : Models()) {
+  for (const CameraModel& model : MadeCameraModels()) {
     for (int i = 0; i < 20; ++i) {
       const PointVelocity velocity{.angular = random.Vector(1.0), .linear = random.Vector(1.0)};
       const Eigen::Vector3d point(random.Number(-0.8, 0.8), random.Number(-0.6, 0.6), 1.5);
@@ -95,7 +64,7 @@ TEST(RawResidual, TheDerivativeByThePointIsThatOfTheNumbers) {
 TEST(ByCameraParameters, PredictsTheResidualsOfACameraNearBy) {
   RandomGeometry random(2);
   const RawResidual residual;
-  for (const CameraModel& model : Models()) {
+  for (const CameraModel& model : MadeCameraModels()) {
     const auto parameters = ParametersOf(model, {}, true, 300.0);
     const ByCameraParameters by_camera(model, parameters);
     const PointVelocity velocity{.angular = {0.3, 0.5, -0.2}, .linear = {0.1, 0.2, 0.1}};
@@ -113,38 +82,6 @@ TEST(ByCameraParameters, PredictsTheResidualsOfACameraNearBy) {
       const Eigen::Vector3d expected = residual.At(moved, velocity, seen, point) - here;
       EXPECT_LT((kSteps * derivative.col(static_cast<Eigen::Index>(i)) - expected).norm(), 1e-3)
           << parameters[i].name;
-    }
-  }
-}
-
-TEST(CameraParameter, MoveGoesBackToTheSameValue) {
-  for (const CameraModel& model : Models()) {
-    for (const CameraParameter& parameter : ParametersOf(model, {}, true, 300.0)) {
-      CameraModel moved = model;
-      parameter.Move(3.0, moved);
-      EXPECT_NE(parameter.ValueIn(moved), parameter.ValueIn(model)) << parameter.name;
-      parameter.Move(-3.0, moved);
-      EXPECT_NEAR(parameter.ValueIn(moved), parameter.ValueIn(model), 0.05 * parameter.step)
-          << parameter.name;
-    }
-  }
-}
-
-// A step moves pixels near the border by about a pixel, so that all numbers are comparable.
-TEST(CameraParameter, AStepOfTheLensIsAboutAPixel) {
-  for (const CameraModel& model : Models()) {
-    // Of a corner that lies beyond the end of the lens, this is the last pixel.
-    const Eigen::Vector3d ray = model.camera.Unproject(model.camera.Undistort({30.0, 25.0}), 1.0);
-    const Eigen::Vector2d raw = model.camera.Distort(model.camera.Project(ray));
-    for (const CameraParameter& parameter :
-         ParametersOf(model, {.readout = false, .disparity = false}, false, 0.0)) {
-      CameraModel moved = model;
-      parameter.Move(0.1, moved);
-      const double change = (moved.camera.Distort(moved.camera.Project(ray)) - raw).norm();
-      if (parameter.IsCoefficient() || parameter.unit == "px") {
-        EXPECT_GT(change, 0.05) << parameter.name;
-        EXPECT_LT(change, 0.2) << parameter.name;
-      }
     }
   }
 }

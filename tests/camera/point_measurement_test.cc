@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "camera/point_measurement.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};

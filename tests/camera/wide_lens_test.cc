@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "camera/wide_lens.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "costs/manifolds.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;

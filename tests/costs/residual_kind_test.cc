@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "costs/residual_kind.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include "costs/object_cost_laws.h"
 
 namespace hullslam {
-
 namespace {
 
 class MakeObjectCostTest : public ::testing::Test {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "hullslam/eval/ate.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/test_data.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(ErrorStatistics, MatchHandComputedValues) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "eval/image_registration.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 // Two vertical edges of the given heights, far from each other and from the borders.

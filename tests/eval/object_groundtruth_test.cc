@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "eval/object_groundtruth.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(TrueObject, SizeIsTheMeanFullExtentForAnyPose) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "eval/object_metrics.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 const PinholeCamera kCamera{.fx = 200.0, .fy = 210.0, .cx = 320.0, .cy = 240.0};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "features/corners.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kBorder = 19;

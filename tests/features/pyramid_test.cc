@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "features/pyramid.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 int DifferingPixels(const cv::Mat& image, cv::Size size, ImageShrinker& shrinker) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/bytes.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/expect_error.h"
 
 namespace hullslam {
-
 namespace {
 
 const Eigen::Matrix2d kMatrix = (Eigen::Matrix2d() << 1.0, -2.0, 3.5, 0.0).finished();

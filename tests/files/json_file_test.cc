@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/json_file.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(ClassicLocaleTest, NumbersHavePointsWhileItExists) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/read_file.h"
 
 #include <fcntl.h>
@@ -21,7 +20,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 using std::chrono::milliseconds;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "files/staged_file.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +21,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/depth_source.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include <opencv2/core.hpp>
 
 namespace hullslam {
-
 namespace {
 
 constexpr double kBf = 40.0;

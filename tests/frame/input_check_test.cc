@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/input_check.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "support/expect_error.h"
 
 namespace hullslam {
-
 namespace {
 
 // The image moved by a number of pixels to the left and down.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {

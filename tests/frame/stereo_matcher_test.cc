@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/stereo_matcher.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "features/test_images.h"
 
 namespace hullslam {
-
 namespace {
 
 // A slanted plane: its disparity grows from 5 px at the top to 45 px at the bottom of the image.

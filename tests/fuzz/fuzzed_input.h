@@ -16,7 +16,6 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
 namespace fs = std::filesystem;
 
 [[noreturn]] inline void Finding(const std::string& what) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "geometry/polygon.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "geometry/triangulation.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 Eigen::Matrix3d Calibration(double fx, double fy, double cx, double cy) {

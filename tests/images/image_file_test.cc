@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "images/image_file.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +15,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 cv::Mat Values(const std::vector<uint16_t>& values) { return cv::Mat(values, true).reshape(1, 1); }

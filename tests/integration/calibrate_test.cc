@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -45,6 +46,15 @@ TEST_F(Calibrate, RefusesWhatItCannotRead) {
   const ProgramResult format = Run(folder_.path(), {"--to", "blender"});
   EXPECT_EQ(format.exit_code, 2);
   EXPECT_NE(format.errors.find("--to"), std::string::npos) << format.errors;
+}
+
+TEST_F(Calibrate, WritesNothingIfItIsInterrupted) {
+  const RenderedDesk desk(60);
+  RunningProgram program("hullslam calibrate", {desk.path(), "--output", output_});
+  program.ReadLine();  // the first progress
+  program.Send(SIGINT);
+  EXPECT_EQ(program.Wait(), 1);
+  EXPECT_FALSE(std::filesystem::exists(output_));
 }
 
 TEST_F(Calibrate, SaysThatARecordingIsTooShort) {

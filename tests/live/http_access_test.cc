@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "live/http_access.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +6,6 @@
 #include <set>
 
 namespace hullslam {
-
 namespace {
 
 const HttpAccessRules kLocal = {.is_loopback = true, .token = "0123abcd", .host_name = "desk"};

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "live/live_inbox.h"
 
 #include <gtest/gtest.h>
 
 namespace hullslam {
-
 namespace {
 
 TrackedFrame FrameAt(int number, TrackingState state = TrackingState::kTracked) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "loop/loop_candidates.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "support/ring_world.h"
 
 namespace hullslam {
-
 namespace {
 
 using Ids = std::vector<KeyframeId>;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "loop/loop_correction.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 // A loop between two keyframes that is exactly right.

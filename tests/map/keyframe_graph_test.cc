@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "map/keyframe_graph.h"
 
 #include <gtest/gtest.h>
@@ -12,16 +11,7 @@
 #include "map/made_map.h"
 
 namespace hullslam {
-
 namespace {
-
-std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
-  std::vector<KeyframeId> ids;
-  for (const uint32_t number : numbers) {
-    ids.emplace_back(number);
-  }
-  return ids;
-}
 
 // Keyframes 0 to 5: the root 0 has the child 1, which has the children 2 to 5.
 class SpanningTree : public ::testing::Test {
@@ -37,14 +27,14 @@ class SpanningTree : public ::testing::Test {
   }
   const Keyframe& At(uint32_t id) const { return map_.keyframes().At(KeyframeId(id)); }
   void ShareAndLink(uint32_t a, uint32_t b, int count) {
-    Share(map_, Ids({a, b}), count);
+    Share(map_, KeyframeIds({a, b}), count);
     UpdateCovisibility(map_, KeyframeId(a));
   }
   Map map_;
 };
 
 TEST_F(SpanningTree, IsKnownAtBothEndsInOrder) {
-  EXPECT_EQ(At(1).children, Ids({2, 3, 4, 5}));
+  EXPECT_EQ(At(1).children, KeyframeIds({2, 3, 4, 5}));
   EXPECT_EQ(At(1).parent, KeyframeId(0));
   EXPECT_FALSE(At(0).parent.IsValid());
 }
@@ -52,10 +42,10 @@ TEST_F(SpanningTree, IsKnownAtBothEndsInOrder) {
 TEST_F(SpanningTree, ANewParentReplacesTheFormer) {
   SetParent(map_, KeyframeId(3), KeyframeId(5));
   EXPECT_EQ(At(3).parent, KeyframeId(5));
-  EXPECT_EQ(At(5).children, Ids({3}));
-  EXPECT_EQ(At(1).children, Ids({2, 4, 5}));
+  EXPECT_EQ(At(5).children, KeyframeIds({3}));
+  EXPECT_EQ(At(1).children, KeyframeIds({2, 4, 5}));
   SetParent(map_, KeyframeId(3), KeyframeId(5));  // no change
-  EXPECT_EQ(At(5).children, Ids({3}));
+  EXPECT_EQ(At(5).children, KeyframeIds({3}));
   SetParent(map_, KeyframeId(3), KeyframeId());
   EXPECT_FALSE(At(3).parent.IsValid());
   EXPECT_TRUE(At(5).children.empty());
@@ -63,7 +53,7 @@ TEST_F(SpanningTree, ANewParentReplacesTheFormer) {
 
 TEST_F(SpanningTree, ChildrenThatShareNothingGoToTheParent) {
   DetachFromTree(map_, KeyframeId(1));
-  EXPECT_EQ(At(0).children, Ids({2, 3, 4, 5}));
+  EXPECT_EQ(At(0).children, KeyframeIds({2, 3, 4, 5}));
   EXPECT_FALSE(At(1).parent.IsValid());
   EXPECT_TRUE(At(1).children.empty());
 }
@@ -76,9 +66,9 @@ TEST_F(SpanningTree, ChildrenGoToTheKeyframesThatTheyShareMostWith) {
   ShareAndLink(3, 0, 20);
   ShareAndLink(4, 3, 30);
   DetachFromTree(map_, KeyframeId(1));
-  EXPECT_EQ(At(0).children, Ids({2, 5}));
-  EXPECT_EQ(At(2).children, Ids({3}));
-  EXPECT_EQ(At(3).children, Ids({4}));
+  EXPECT_EQ(At(0).children, KeyframeIds({2, 5}));
+  EXPECT_EQ(At(2).children, KeyframeIds({3}));
+  EXPECT_EQ(At(3).children, KeyframeIds({4}));
   EXPECT_EQ(At(5).parent, KeyframeId(0));
 }
 
@@ -87,14 +77,14 @@ TEST_F(SpanningTree, ASiblingBecomesAParentOnlyWhenItHasANewParent) {
   ShareAndLink(3, 2, 60);
   ShareAndLink(5, 4, 50);
   DetachFromTree(map_, KeyframeId(1));
-  EXPECT_EQ(At(0).children, Ids({2, 4}));
-  EXPECT_EQ(At(2).children, Ids({3}));
-  EXPECT_EQ(At(4).children, Ids({5}));
+  EXPECT_EQ(At(0).children, KeyframeIds({2, 4}));
+  EXPECT_EQ(At(2).children, KeyframeIds({3}));
+  EXPECT_EQ(At(4).children, KeyframeIds({5}));
 }
 
 TEST_F(SpanningTree, ALeafIsRemoved) {
   DetachFromTree(map_, KeyframeId(4));
-  EXPECT_EQ(At(1).children, Ids({2, 3, 5}));
+  EXPECT_EQ(At(1).children, KeyframeIds({2, 3, 5}));
   EXPECT_FALSE(At(4).parent.IsValid());
 }
 
@@ -102,12 +92,12 @@ TEST_F(SpanningTree, ALeafIsRemoved) {
 TEST_F(SpanningTree, AKeyframeBecomesTheRoot) {
   MakeRoot(map_, KeyframeId(4));
   EXPECT_FALSE(At(4).parent.IsValid());
-  EXPECT_EQ(At(4).children, Ids({1}));
+  EXPECT_EQ(At(4).children, KeyframeIds({1}));
   EXPECT_EQ(At(1).parent, KeyframeId(4));
-  EXPECT_EQ(At(1).children, Ids({0, 2, 3, 5}));
+  EXPECT_EQ(At(1).children, KeyframeIds({0, 2, 3, 5}));
   EXPECT_EQ(At(0).parent, KeyframeId(1));
   MakeRoot(map_, KeyframeId(4));
-  EXPECT_EQ(At(4).children, Ids({1}));
+  EXPECT_EQ(At(4).children, KeyframeIds({1}));
 }
 
 using Edges = std::vector<std::pair<uint32_t, int>>;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "hullslam/map/keyframe.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/random_geometry.h"
 
 namespace hullslam {
-
 namespace {
 
 Rigid3 AlongX(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }

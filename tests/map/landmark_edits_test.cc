@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "map/landmark_edits.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,6 @@
 #include "map/made_map.h"
 
 namespace hullslam {
-
 namespace {
 
 // A descriptor with the first `count` bits set.

@@ -18,6 +18,10 @@ namespace hullslam {
 inline constexpr uint32_t kFramesPerKeyframe = 3;
 inline constexpr uint32_t kDetections = 4;  // per frame: cup, book, cup, book with different scores
 
+inline std::vector<KeyframeId> KeyframeIds(const std::vector<uint32_t>& numbers) {
+  return {numbers.begin(), numbers.end()};
+}
+
 // A frame of `keypoints` keypoints at level 0, of which the first `with_depth` have a depth of 2 m.
 inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t with_depth = 0) {
   auto frame = std::make_shared<Frame>();

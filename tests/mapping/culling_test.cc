@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "mapping/culling.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +17,6 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr int kWall = 2000;  // mm

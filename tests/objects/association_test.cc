@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/association.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "objects/made_objects.h"
 
 namespace hullslam {
-
 namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;

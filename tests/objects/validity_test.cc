@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/validity.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "objects/made_objects.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(ObjectRejection, EveryReasonHasAName) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/visibility.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,6 @@
 #include "support/test_cameras.h"
 
 namespace hullslam {
-
 namespace {
 
 // A cup that a camera at the world's origin sees 1 m ahead.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "optim/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
@@ -23,16 +22,7 @@
 #include "support/unknown_points.h"
 
 namespace hullslam {
-
 namespace {
-
-std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
-  std::vector<KeyframeId> ids;
-  for (const uint32_t number : numbers) {
-    ids.emplace_back(number);
-  }
-  return ids;
-}
 
 // A map of the synthetic world. Perturb moves its points and all but the first two poses away from
 // the truth.
@@ -54,8 +44,8 @@ class BundleAdjustment : public ::testing::Test {
   }
   BundleWindow Window() const {
     BundleWindow window;
-    window.fixed = Ids({0, 1});
-    window.moving = Ids({2, 3, 4, 5});
+    window.fixed = KeyframeIds({0, 1});
+    window.moving = KeyframeIds({2, 3, 4, 5});
     for (const LandmarkId id : made_.landmarks) {
       if (id.IsValid()) {
         window.landmarks.push_back(id);
@@ -352,7 +342,7 @@ TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
   const Rigid3 behind = Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.05}) * truth;
   made_.map.SetPose(id, behind);
   BundleWindow window = Window();
-  window.fixed = Ids({0, 1, 2});
+  window.fixed = KeyframeIds({0, 1, 2});
   window.moving = {id};
   const Keyframe& keyframe = made_.map.keyframes().At(id);
   Sensor sensor = world_.sensor();
@@ -506,7 +496,8 @@ TEST_F(BundleAdjustment, OfAnEmptyWindowIsEmpty) {
   EXPECT_TRUE(nothing.poses.empty());
   EXPECT_TRUE(nothing.positions.empty());
   // Keyframes that see nothing stay where they are.
-  const BundleWindow window{.moving = Ids({3}), .fixed = Ids({0}), .landmarks = {}, .objects = {}};
+  const BundleWindow window{
+      .moving = KeyframeIds({3}), .fixed = KeyframeIds({0}), .landmarks = {}, .objects = {}};
   const BundleResult idle = AdjustBundle(made_.map, world_.sensor(), window, {}, nullptr);
   for (const auto& [id, pose] : idle.poses) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "report/lost_frames.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr TrackingState kTracked = TrackingState::kTracked;

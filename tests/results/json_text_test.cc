@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "results/json_text.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/expect_error.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(JsonText, RoundsToTheUnit) {

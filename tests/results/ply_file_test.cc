@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "results/ply_file.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 const std::vector<Eigen::Vector3d> kLandmarks = {{1.0, 2.0, 3.0}, {-4.0, 0.5, 6.0}};

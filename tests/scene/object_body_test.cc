@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "scene/object_body.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "scene/made_scene.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(SphereDirection, EachHasItsShareOfTheSphere) {

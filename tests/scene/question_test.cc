@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "scene/question.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/expect_error.h"
 
 namespace hullslam {
-
 namespace {
 
 using Words = std::vector<std::string>;

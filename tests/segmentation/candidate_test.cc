@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "segmentation/candidate.h"
 
 #include <gtest/gtest.h>
 
 namespace hullslam {
-
 namespace {
 
 Candidate Box(double left, double right, double score, int class_number = 0) {

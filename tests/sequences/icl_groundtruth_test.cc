@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/icl_groundtruth.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 // The pixel of a point in a camera whose y axis points up (fy < 0). Pose and point are those of its

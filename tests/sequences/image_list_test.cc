@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/image_list.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 namespace fs = std::filesystem;

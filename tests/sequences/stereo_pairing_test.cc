@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sequences/stereo_pairing.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr double kRate = 20.0;  // images per second

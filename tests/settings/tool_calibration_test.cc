@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "settings/tool_calibration.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr const char* kLens =

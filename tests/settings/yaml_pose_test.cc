@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "settings/yaml_pose.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include "support/temporary_folder.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(RotationMatrix, IsReadWithTheRoundingOfFiles) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "system/pipeline.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +24,6 @@
 #include "system/ring_path.h"
 
 namespace hullslam {
-
 namespace {
 
 struct Kind {

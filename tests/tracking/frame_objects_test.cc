@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/frame_objects.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "tracking/tracker.h"
 
 namespace hullslam {
-
 namespace {
 
 class PoseObjectsTest : public ::testing::Test {

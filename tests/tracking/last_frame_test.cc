@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/last_frame.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
-
 namespace {
 
 Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }

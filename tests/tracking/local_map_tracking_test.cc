@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/local_map_tracking.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "map/keyframe_graph.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr size_t kKeypoints = 50;
@@ -59,14 +57,6 @@ class PlantedMap {
   std::vector<uint32_t> used_;  // number of used keypoints of each keyframe
 };
 
-std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
-  std::vector<KeyframeId> ids;
-  for (const uint32_t number : numbers) {
-    ids.emplace_back(number);
-  }
-  return ids;
-}
-
 TEST(LocalMap, WithoutLandmarksItSurroundsTheLastReference) {
   PlantedMap planted(4);
   const LandmarkId a = planted.AddLandmark({0, 1});
@@ -75,7 +65,7 @@ TEST(LocalMap, WithoutLandmarksItSurroundsTheLastReference) {
   planted.AddEdge(1, 2, 20);
   const LocalMap local = SelectLocalMap(planted.map, {}, KeyframeId(1), 10);
   EXPECT_EQ(local.reference, KeyframeId(1));
-  EXPECT_EQ(local.keyframes, Ids({1, 2}));
+  EXPECT_EQ(local.keyframes, KeyframeIds({1, 2}));
   EXPECT_EQ(local.landmarks, (std::vector{a, b}));
 }
 
@@ -86,7 +76,7 @@ TEST(LocalMap, TheReferenceSharesMostLandmarks) {
   const LandmarkId c = planted.AddLandmark({2, 3});
   const LocalMap local = SelectLocalMap(planted.map, std::vector{a, b, c}, KeyframeId(1), 10);
   EXPECT_EQ(local.reference, KeyframeId(2));
-  EXPECT_EQ(local.keyframes, Ids({0, 2, 3})) << "keyframe 1 observes none of them";
+  EXPECT_EQ(local.keyframes, KeyframeIds({0, 2, 3})) << "keyframe 1 observes none of them";
 }
 
 TEST(LocalMap, ATieGoesToTheOldestKeyframe) {
@@ -114,7 +104,7 @@ TEST(LocalMap, InvalidAndErasedLandmarksHaveNoVote) {
   planted.map.EraseLandmark(erased);
   const LocalMap local =
       SelectLocalMap(planted.map, std::vector{LandmarkId(), a, erased}, KeyframeId(0), 10);
-  EXPECT_EQ(local.keyframes, Ids({0}));
+  EXPECT_EQ(local.keyframes, KeyframeIds({0}));
   EXPECT_EQ(local.landmarks, std::vector{a});
 }
 
@@ -127,7 +117,7 @@ TEST(LocalMap, ContainsNeighboursInCovisibilityAndTree) {
   SetParent(planted.map, KeyframeId(1), KeyframeId(0));
   planted.AddEdge(4, 3, 20);
   const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 10);
-  EXPECT_EQ(local.keyframes, Ids({0, 2, 4, 5})) << "neighbours of neighbours are not added";
+  EXPECT_EQ(local.keyframes, KeyframeIds({0, 2, 4, 5})) << "neighbours of neighbours are not added";
 }
 
 TEST(LocalMap, ContainsOnlyTheTenBestNeighbours) {
@@ -137,7 +127,7 @@ TEST(LocalMap, ContainsOnlyTheTenBestNeighbours) {
     planted.AddEdge(0, i, 100 + static_cast<int>(i));
   }
   const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 80);
-  EXPECT_EQ(local.keyframes, Ids({0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+  EXPECT_EQ(local.keyframes, KeyframeIds({0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
 }
 
 TEST(LocalMap, TheLimitKeepsTheKeyframesThatShareMost) {
@@ -153,9 +143,11 @@ TEST(LocalMap, TheLimitKeepsTheKeyframesThatShareMost) {
   planted.AddEdge(4, 3, 90);
   const LocalMap two = SelectLocalMap(planted.map, landmarks, KeyframeId(0), 2);
   EXPECT_EQ(two.reference, KeyframeId(4));
-  EXPECT_EQ(two.keyframes, Ids({1, 4}));
-  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 3).keyframes, Ids({0, 1, 4}));
-  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 4).keyframes, Ids({0, 1, 3, 4}));
+  EXPECT_EQ(two.keyframes, KeyframeIds({1, 4}));
+  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 3).keyframes,
+            KeyframeIds({0, 1, 4}));
+  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 4).keyframes,
+            KeyframeIds({0, 1, 3, 4}));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/shutter_correction.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,6 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
-
 namespace {
 
 Sensor MadeSensor() {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/between_threads.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include <vector>
 
 namespace hullslam {
-
 namespace {
 
 TEST(Mailbox, IsFirstInFirstOut) {

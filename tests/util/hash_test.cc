@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/hash.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include <string>
 
 namespace hullslam {
-
 namespace {
 
 // Values of the authors' test vectors.

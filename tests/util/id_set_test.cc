@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/id_set.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "hullslam/util/id.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(IdMap, FindsAddedValues) {

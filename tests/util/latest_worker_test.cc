@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/latest_worker.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include <vector>
 
 namespace hullslam {
-
 namespace {
 
 // A worker that records its tasks and stays in the first one until the test releases it.

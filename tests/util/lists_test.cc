@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/lists.h"
 
 #include <gtest/gtest.h>
 
 namespace hullslam {
-
 namespace {
 
 TEST(Thin, ChoosesEvenly) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/task_runner.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(SerialRunner, RunsEachTaskInOrder) {

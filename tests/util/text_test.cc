@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "util/text.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include <string>
 
 namespace hullslam {
-
 namespace {
 
 // The locale of this test is "C". So the functions of the standard are right for ASCII.

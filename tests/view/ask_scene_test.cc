@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/ask_scene.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/made_view.h"
 
 namespace hullslam {
-
 namespace {
 
 // A blue cut-out of 40x20 px with a square outline.

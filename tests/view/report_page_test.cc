@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/report_page.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,6 @@
 #include "view/view_message.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(ReportPage, IsOneSmallFileWithoutAddresses) {

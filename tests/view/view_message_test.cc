@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "view/view_message.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/made_view.h"
 
 namespace hullslam {
-
 namespace {
 
 // 1.0f has the bytes 00 00 80 3f, and 258 has 02 01 00 00.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/detection/frame_detector.h"
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include "util/statistics.h"
 
 namespace hullslam {
-
 namespace {
 
 // The disparity at the median depth of the points on the object; 0 if there are none.

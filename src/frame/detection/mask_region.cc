@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/detection/mask_region.h"
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 
 namespace hullslam {
-
 namespace {
 
 // px. Far outside any image, but OpenCV's fixed-point arithmetic does not overflow there.

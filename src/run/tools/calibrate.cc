@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,10 @@ void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
   app.add_option("--to", arguments.format, "format of the file")
       ->check(CLI::IsMember(CameraFormatNames()))
       ->capture_default_str();
-  app.add_option("--passes", run.max_passes,
-                 "number of runs at most; each has the camera that the one before found")
+  app.add_option(
+         "--passes", run.max_passes,
+         "number of runs at most, twice as many from nothing; each has the camera that the one "
+         "before found")
       ->check(WholeNumber(1))
       ->capture_default_str();
   AddDebugFlag(app);
@@ -70,22 +73,21 @@ int RunCalibrate(int argc, char** argv) {
   }
   ProbeFile(arguments.output);
   CatchInterrupts();
-  const CalibratedRun calibrated = RunCalibration(arguments.run);
-  if (IsInterrupted()) {
-    PrintFailure("the program was interrupted; nothing was written");
+  const std::optional<CalibratedRun> calibrated = RunCalibration(arguments.run);
+  if (!calibrated) {
     return kFailed;
   }
-  PrintCalibration(calibrated);
+  PrintCalibration(*calibrated);
   const auto names = CameraFormatNames();
   const auto format =
       static_cast<CameraFormat>(std::ranges::find(names, arguments.format) - names.begin());
-  const SystemOptions& options = calibrated.options;
+  const SystemOptions& options = calibrated->options;
   const std::vector<NamedSetting> extra = {
       {"Camera.readout_time", fmt::format("{}", options.readout_time)},
       {"depth.disparity_offset", fmt::format("{}", options.depth.disparity_offset)}};
   WriteFileAtomically(arguments.output,
                       CameraFileText(format, options.camera, options.frames_per_second, extra,
-                                     OriginOf(calibrated)));
+                                     OriginOf(*calibrated)));
   Print("{} has the camera\n", arguments.output.string());
   return kDone;
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "run/tools/commands.h"
 
 #include <fmt/format.h>
@@ -22,7 +21,6 @@
 #include "util/text.h"
 
 namespace hullslam {
-
 namespace {
 
 constexpr const char* kRun = "Run SLAM";

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/sources/pair_votes.h"
 
 #include <cstddef>
@@ -15,7 +14,6 @@
 #include "util/hash.h"
 
 namespace hullslam {
-
 namespace {
 
 double SigmaOf(const Keypoint& keypoint, const ScaleLevels& levels) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/detection/frame_detector.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +7,6 @@
 #include <vector>
 
 namespace hullslam {
-
 namespace {
 
 constexpr PinholeCamera kCameraOfPair{

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/detection/mask_outline.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,6 @@
 #include "hullslam/util/check.h"
 
 namespace hullslam {
-
 namespace {
 
 using Outlines = std::vector<std::vector<Eigen::Vector2d>>;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "frame/detection/mask_region.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "support/square_mask.h"
 
 namespace hullslam {
-
 namespace {
 
 using Eigen::Vector2d;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "objects/constraint/misfit.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,6 @@
 #include "support/test_cameras.h"
 
 namespace hullslam {
-
 namespace {
 
 // The hull of a square of raw pixels, and its right side as a line.

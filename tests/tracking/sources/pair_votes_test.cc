@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "tracking/sources/pair_votes.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include "support/synthetic_world.h"
 
 namespace hullslam {
-
 namespace {
 
 TEST(MakePixelPairs, EachMatchGivesItsPixelsAndTheScaleOfTheirLevels) {
