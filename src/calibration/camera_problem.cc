@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,12 +12,38 @@
 
 #include "optim/robust.h"
 #include "util/statistics.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFixed = 1e9;  // weight of what does not move, relative to the largest
+
+// Steps must be good to second order where a part of the map turns against another, since that
+// hardly changes the cost: otherwise only tiny ones are possible. So a view moves along a screw,
+// which is exact for a turn of everything around it.
+Rigid3 ViewAfterStep(const Rigid3& cam_from_world, const Eigen::Matrix<double, 6, 1>& step) {
+  const Eigen::Vector3d turn = step.head<3>();
+  const Eigen::Vector3d shift = step.tail<3>();
+  const Eigen::Vector3d first = turn.cross(shift);
+  return Rigid3(ExpSo3(turn), shift + first / 2.0 + turn.cross(first) / 6.0) * cam_from_world;
+}
+
+// And a point moves with the first view that sees it, in whose coordinates (x / z, y / z, 1 / z)
+// also far points move evenly (Civera, Davison and Montiel 2008). `step` is that in the world.
+Eigen::Vector3d PointAfterStep(const Rigid3& before, const Eigen::Matrix<double, 6, 1>& view_step,
+                               const Rigid3& after, const Eigen::Vector3d& point,
+                               const Eigen::Vector3d& step) {
+  constexpr double kLeast = 0.1;  // of 1 / z, in one step
+  const Eigen::Vector3d p = before * point;
+  const Eigen::Vector3d change =
+      before.rotation * step + view_step.head<3>().cross(p) + view_step.tail<3>();
+  const double inverse = std::max(1.0 - change.z() / p.z(), kLeast) / p.z();
+  const Eigen::Vector2d on_plane =
+      (p.head<2>() + change.head<2>() - p.head<2>() * (change.z() / p.z())) / p.z();
+  return Inverse(after) * (on_plane.homogeneous() / inverse).eval();
+}
 
 }  // namespace
 
@@ -138,41 +165,63 @@ CameraAdjustment::PointSystem CameraAdjustment::SystemOf(size_t point, const Red
   return system;
 }
 
+// Adds a point to the sums, and takes it out of the unknown numbers.
+CameraAdjustment::PointSystem CameraAdjustment::Eliminate(size_t index, const Reduction& reduction,
+                                                          double damping,
+                                                          ReducedSystem& sum) const {
+  const Eigen::Index camera = camera_row();
+  const auto numbers = static_cast<Eigen::Index>(parameters_.size());
+  PointSystem point = SystemOf(index, reduction, sum);
+  Eigen::Matrix3d damped = point.hessian;
+  // A point in a single view without depth is not held along its ray.
+  damped.diagonal() += damping * point.hessian.diagonal() +
+                       Eigen::Vector3d::Constant(1e-12 * point.hessian.trace() + 1e-30);
+  point.inverse = damped.inverse();
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> by_camera = point.by_camera * point.inverse;
+  for (const PointSystem::Coupling& one : point.couplings) {
+    const Eigen::Matrix<double, 6, 3> solved = one.block * point.inverse;
+    sum.gradient.segment<6>(one.row).noalias() -= solved * point.gradient;
+    for (const PointSystem::Coupling& other : point.couplings) {
+      if (other.row <= one.row) {
+        sum.hessian.block<6, 6>(one.row, other.row).noalias() -= solved * other.block.transpose();
+      }
+    }
+    sum.hessian.block(camera, one.row, numbers, 6).noalias() -= by_camera * one.block.transpose();
+  }
+  sum.hessian.block(camera, camera, numbers, numbers).noalias() -=
+      by_camera * point.by_camera.transpose();
+  sum.gradient.tail(numbers).noalias() -= by_camera * point.gradient;
+  return point;
+}
+
 ReducedSystem CameraAdjustment::Reduce(double damping, const std::vector<uint8_t>& is_left_out,
                                        std::vector<PointSystem>* points) const {
   const Eigen::Index camera = camera_row();
   const auto numbers = static_cast<Eigen::Index>(parameters_.size());
   const Reduction reduction{is_left_out, ByCameraParameters(model_, parameters_)};
-  ReducedSystem sum;
-  sum.hessian.setZero(camera + numbers, camera + numbers);
-  sum.gradient.setZero(camera + numbers);
+  const size_t count = problem_.points.size();
   if (points != nullptr) {
-    points->resize(problem_.points.size());
+    points->resize(count);
   }
-  for (size_t i = 0; i < problem_.points.size(); ++i) {
-    PointSystem point = SystemOf(i, reduction, sum);
-    Eigen::Matrix3d damped = point.hessian;
-    // A point in a single view without depth is not held along its ray.
-    damped.diagonal() += damping * point.hessian.diagonal() +
-                         Eigen::Vector3d::Constant(1e-12 * point.hessian.trace() + 1e-30);
-    point.inverse = damped.inverse();
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> by_camera = point.by_camera * point.inverse;
-    for (const PointSystem::Coupling& one : point.couplings) {
-      const Eigen::Matrix<double, 6, 3> solved = one.block * point.inverse;
-      sum.gradient.segment<6>(one.row).noalias() -= solved * point.gradient;
-      for (const PointSystem::Coupling& other : point.couplings) {
-        if (other.row <= one.row) {
-          sum.hessian.block<6, 6>(one.row, other.row).noalias() -= solved * other.block.transpose();
-        }
+  // As many parts on any computer, so that the sum has the same bits.
+  std::array<ReducedSystem, 4> parts;
+  ParallelRunner(0).Run(parts.size(), [&](size_t part) {
+    ReducedSystem& sum = parts.at(part);
+    sum.hessian.setZero(camera + numbers, camera + numbers);
+    sum.gradient.setZero(camera + numbers);
+    for (size_t i = part; i < count; i += parts.size()) {
+      PointSystem point = Eliminate(i, reduction, damping, sum);
+      if (points != nullptr) {
+        (*points)[i] = std::move(point);
       }
-      sum.hessian.block(camera, one.row, numbers, 6).noalias() -= by_camera * one.block.transpose();
     }
-    sum.hessian.block(camera, camera, numbers, numbers).noalias() -=
-        by_camera * point.by_camera.transpose();
-    sum.gradient.tail(numbers).noalias() -= by_camera * point.gradient;
-    if (points != nullptr) {
-      (*points)[i] = std::move(point);
-    }
+  });
+  ReducedSystem& sum = parts.front();
+  for (size_t part = 1; part < parts.size(); ++part) {
+    sum.hessian += parts.at(part).hessian;
+    sum.gradient += parts.at(part).gradient;
+    sum.weighted_chi2 += parts.at(part).weighted_chi2;
+    sum.weight += parts.at(part).weight;
   }
   for (size_t i = 0; i < parameters_.size(); ++i) {
     if (const double sigma = parameters_[i].prior_steps; sigma > 0.0) {
@@ -183,7 +232,7 @@ ReducedSystem CameraAdjustment::Reduce(double damping, const std::vector<uint8_t
   }
   FixFrame(is_left_out, sum.hessian);
   sum.hessian.diagonal() *= 1.0 + damping;
-  return sum;
+  return std::move(sum);
 }
 
 void CameraAdjustment::FixFrame(const std::vector<uint8_t>& is_left_out,
@@ -200,7 +249,9 @@ void CameraAdjustment::FixFrame(const std::vector<uint8_t>& is_left_out,
     double most = 0.0;
     size_t i = begin;
     for (; i < views.size() && views[i].recording == views[begin].recording; ++i) {
-      if (is_left_out[i] != 0) {
+      // Of a view that no point is left of, nothing is known.
+      if (is_left_out[i] != 0 ||
+          hessian(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) == 0.0) {
         hold(i);
       } else if (!first) {
         first = i;
@@ -226,23 +277,52 @@ double CameraAdjustment::MedianOf(const Measure& measure) const {
   std::vector<double> values;
   for (size_t i = 0; i < problem_.points.size(); ++i) {
     for (const CalibrationObservation& seen : problem_.observations[i]) {
-      const CalibrationView& view = problem_.views[seen.view];
-      values.push_back(measure(seen, residual_.At(model_, view.velocity, seen,
-                                                  view.cam_from_world * problem_.points[i])));
+      values.push_back(
+          measure(seen, problem_.views[seen.view].cam_from_world * problem_.points[i]));
     }
   }
   return values.empty() ? 0.0 : Median(std::move(values));
+}
+
+Eigen::Vector3d CameraAdjustment::ResidualOf(const CalibrationObservation& seen,
+                                             const Eigen::Vector3d& in_camera) const {
+  return residual_.At(model_, problem_.views[seen.view].velocity, seen, in_camera);
+}
+
+// A wrong point may lie in the centre of a camera, where a tiny step moves its image anywhere: its
+// derivatives are so large that no step of the others is possible.
+void CameraAdjustment::DropPointsInCameras() {
+  constexpr size_t kFewest = 2;
+  const double nearest =
+      0.02 * MedianOf([](const CalibrationObservation&, const Eigen::Vector3d& in_camera) {
+        return in_camera.z();
+      });
+  size_t kept = 0;
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    std::vector<CalibrationObservation>& observations = problem_.observations[i];
+    std::erase_if(observations, [&](const CalibrationObservation& seen) {
+      return (problem_.views[seen.view].cam_from_world * problem_.points[i]).z() < nearest;
+    });
+    if (observations.size() >= kFewest) {
+      problem_.points[kept] = problem_.points[i];
+      std::swap(problem_.observations[kept], observations);
+      ++kept;
+    }
+  }
+  problem_.points.resize(kept);
+  problem_.observations.resize(kept);
 }
 
 // With a wrong camera most errors are beyond the scale of the loss, and would hardly pull. So it
 // begins with a scale that most errors are within.
 void CameraAdjustment::Solve(const Options& options) {
   constexpr int kRounds = 4;
+  DropPointsInCameras();
   for (int round = 0; round < kRounds; ++round) {
-    const double excess =
-        std::max(1.0, MedianOf([](const CalibrationObservation& seen, const auto& residual) {
-                   return residual.norm() / std::sqrt(seen.disparity > 0.0 ? 3.0 : 2.0);
-                 }));
+    const double excess = std::max(
+        1.0, MedianOf([&](const CalibrationObservation& seen, const auto& in_camera) {
+          return ResidualOf(seen, in_camera).norm() / std::sqrt(seen.disparity > 0.0 ? 3.0 : 2.0);
+        }));
     loss_scale_ = kCauchyScale * excess;
     cost_ = Cost(model_, problem_.views, problem_.points);
     Minimise(options);
@@ -254,9 +334,11 @@ void CameraAdjustment::Solve(const Options& options) {
   cost_ = Cost(model_, problem_.views, problem_.points);
 }
 
+// The damping follows how well the last step was predicted (Nielsen 1999).
 void CameraAdjustment::Minimise(const Options& options) {
   const std::vector<uint8_t> all(problem_.views.size(), 0);
   double damping = 1e-4;
+  double growth = 2.0;
   for (int i = 0; i < options.max_iterations; ++i) {
     std::vector<PointSystem> points;
     const ReducedSystem system = Reduce(damping, all, &points);
@@ -273,33 +355,42 @@ void CameraAdjustment::Minimise(const Options& options) {
     std::vector<CalibrationView> views = problem_.views;
     for (size_t k = 0; k < views.size(); ++k) {
       views[k].cam_from_world =
-          Retract(views[k].cam_from_world, step.segment<6>(6 * static_cast<Eigen::Index>(k)));
+          ViewAfterStep(views[k].cam_from_world, step.segment<6>(6 * static_cast<Eigen::Index>(k)));
     }
     std::vector<Eigen::Vector3d> moved = problem_.points;
+    double predicted = -system.gradient.dot(step);
     for (size_t k = 0; k < moved.size(); ++k) {
       Eigen::Vector3d gradient = points[k].gradient;
+      predicted += gradient.dot(points[k].inverse * gradient);
       for (const PointSystem::Coupling& one : points[k].couplings) {
         gradient.noalias() += one.block.transpose() * step.segment<6>(one.row);
       }
       gradient.noalias() += points[k].by_camera.transpose() *
                             step.tail(static_cast<Eigen::Index>(parameters_.size()));
-      moved[k] -= points[k].inverse * gradient;
+      const size_t first = problem_.observations[k].front().view;
+      moved[k] =
+          PointAfterStep(problem_.views[first].cam_from_world,
+                         step.segment<6>(6 * static_cast<Eigen::Index>(first)),
+                         views[first].cam_from_world, moved[k], -(points[k].inverse * gradient));
     }
     const double cost = model.camera.FindFault().empty() ? Cost(model, views, moved) : kInfinite;
     if (!(cost < cost_)) {
       constexpr double kMostDamping = 1e8;
-      damping *= 10.0;
+      damping *= growth;
+      growth *= 2.0;
       if (damping > kMostDamping) {
         break;
       }
       continue;
     }
+    const double surprise = 2.0 * (cost_ - cost) / (0.5 * predicted) - 1.0;
     const bool is_done = cost_ - cost < options.tolerance * cost_;
     model_ = model;
     problem_.views = std::move(views);
     problem_.points = std::move(moved);
     cost_ = cost;
-    damping = std::max(0.1 * damping, 1e-10);
+    damping = std::max(std::clamp(1.0 - surprise * surprise * surprise, 0.1, 2.0) * damping, 1e-10);
+    growth = 2.0;
     if (is_done) {
       break;
     }
@@ -339,8 +430,8 @@ Eigen::VectorXd CameraAdjustment::StepWithout(const std::vector<uint8_t>& is_lef
 }
 
 double CameraAdjustment::MedianError() const {
-  return MedianOf([](const CalibrationObservation& seen, const Eigen::Vector3d& residual) {
-    return seen.sigma * residual.head<2>().norm();
+  return MedianOf([&](const CalibrationObservation& seen, const Eigen::Vector3d& in_camera) {
+    return seen.sigma * ResidualOf(seen, in_camera).head<2>().norm();
   });
 }
 

@@ -59,7 +59,8 @@ class CameraAdjustment {
     int max_iterations = 40;
     double tolerance = 1e-7;  // relative change of the cost at which it ends
   };
-  // Minimises the cost.
+  // Minimises the cost. Drops observations much nearer than the others, and points that too few
+  // views see then.
   void Solve(const Options& options);
 
   const CalibrationProblem& problem() const { return problem_; }
@@ -85,12 +86,18 @@ class CameraAdjustment {
   struct Reduction;
 
   PointSystem SystemOf(size_t point, const Reduction& reduction, ReducedSystem& sum) const;
+  PointSystem Eliminate(size_t index, const Reduction& reduction, double damping,
+                        ReducedSystem& sum) const;
   ReducedSystem Reduce(double damping, const std::vector<uint8_t>& is_left_out,
                        std::vector<PointSystem>* points) const;
   void FixFrame(const std::vector<uint8_t>& is_left_out, Eigen::MatrixXd& hessian) const;
   Eigen::MatrixXd CameraInformation(const ReducedSystem& system, Eigen::VectorXd* gradient) const;
+  Eigen::Vector3d ResidualOf(const CalibrationObservation& seen,
+                             const Eigen::Vector3d& in_camera) const;
+  void DropPointsInCameras();
   void Minimise(const Options& options);
-  // The median of a number that is computed from each observation and its residual.
+  // The median of a number that is computed from each observation and its point in the camera
+  // frame.
   template <typename Measure>
   double MedianOf(const Measure& measure) const;
   double Cost(const CameraModel& model, std::span<const CalibrationView> views,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "util/statistics.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {
@@ -68,13 +69,13 @@ Eigen::MatrixXd JackknifeCovariance(const CameraAdjustment& adjustment) {
   const size_t pieces = std::min(kPieces, views / 2);
   const auto size = static_cast<Eigen::Index>(adjustment.parameters().size());
   Eigen::MatrixXd steps(size, static_cast<Eigen::Index>(pieces));
-  for (size_t piece = 0; piece < pieces; ++piece) {
+  ParallelRunner(0).Run(pieces, [&](size_t piece) {
     std::vector<uint8_t> is_left_out(views, 0);
     for (size_t i = piece * views / pieces; i < (piece + 1) * views / pieces; ++i) {
       is_left_out[i] = 1;
     }
     steps.col(static_cast<Eigen::Index>(piece)) = adjustment.StepWithout(is_left_out);
-  }
+  });
   const Eigen::VectorXd mean = steps.rowwise().mean();
   const Eigen::MatrixXd deviations = steps.colwise() - mean;
   const auto count = static_cast<double>(pieces);

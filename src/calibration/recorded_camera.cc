@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <future>
+#include <map>
 #include <optional>
-#include <unordered_map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,10 +25,14 @@ namespace {
 constexpr size_t kFewestViews = 8;
 constexpr size_t kFewestObservations = 500;
 
-// Whether all numbers of a camera are those of another one within their standard deviations.
-bool IsWithinErrors(const CameraModel& a, const CameraModel& b, const CameraEvidence& evidence) {
+// Whether no number of a camera has changed by more than what moves pixels at the border by a
+// quarter, or by more than chance explains.
+bool IsSettled(const CameraModel& before, const CameraModel& after,
+               const CameraEvidence& evidence) {
+  constexpr double kSteps = 0.25;
   return std::ranges::all_of(evidence.parameters, [&](const ParameterEvidence& one) {
-    return std::abs(one.parameter.ValueIn(a) - one.parameter.ValueIn(b)) <= one.sigma;
+    return std::abs(one.parameter.ValueIn(after) - one.parameter.ValueIn(before)) <=
+           std::max(kSteps * one.parameter.step, one.bundle_sigma);
   });
 }
 
@@ -51,40 +57,77 @@ std::optional<PointVelocity> VelocityAt(const Trajectory& trajectory, double tim
   return MeanVelocity(Inverse(after.world_from_cam) * before.world_from_cam, duration);
 }
 
-// The views of a problem and their numbers.
-struct ChosenViews {
-  std::vector<CalibrationView> views;
-  std::unordered_map<uint32_t, uint32_t> number_of_keyframe;
-};
+// The pose of the trajectory at exactly this time; null if there is none.
+const StampedPose* PoseAt(const Trajectory& trajectory, double timestamp) {
+  const auto it =
+      std::ranges::lower_bound(trajectory, timestamp - 1e-6, {}, &StampedPose::timestamp);
+  return it != trajectory.end() && it->timestamp < timestamp + 1e-6 ? &*it : nullptr;
+}
 
-// The keyframes with a velocity; all of them, without velocities, if those are few.
-ChosenViews ChooseViews(const Map& map, const Trajectory& trajectory) {
-  struct Candidate {
-    KeyframeId id;
-    CalibrationView view;
-  };
-  std::vector<Candidate> all;
-  std::vector<Candidate> moving;
-  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    const double timestamp = keyframe.frame->timestamp;
-    const Candidate still{
-        id, {.timestamp = timestamp, .cam_from_world = keyframe.cam_from_world, .velocity = {}}};
-    all.push_back(still);
-    if (const auto velocity = VelocityAt(trajectory, timestamp)) {
-      moving.push_back(still);
-      moving.back().view.velocity = *velocity;
-    }
+std::vector<SeenView> Keyframes(const Map& map, const Sensor& sensor, const CameraModel& model) {
+  std::vector<SeenView> views;
+  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    views.push_back(SeenViewOf(*keyframe.frame, keyframe.landmarks, sensor, model));
+    views.back().view.cam_from_world = keyframe.cam_from_world;
   });
-  std::vector<Candidate>& candidates = 2 * moving.size() >= all.size() ? moving : all;
-  std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.view.timestamp; });
-  ChosenViews chosen;
-  const size_t count = std::min(kMostViews, candidates.size());
+  return views;
+}
+
+// At most `most` views with a velocity, evenly chosen; all of them without velocities if those are
+// few. By time.
+std::vector<SeenView> Chosen(std::vector<SeenView> views, const Trajectory& trajectory,
+                             size_t most) {
+  std::ranges::stable_sort(views, {}, [](const SeenView& one) { return one.view.timestamp; });
+  std::vector<std::optional<PointVelocity>> velocities;
+  for (const SeenView& one : views) {
+    velocities.push_back(VelocityAt(trajectory, one.view.timestamp));
+  }
+  const auto moving = static_cast<size_t>(
+      std::ranges::count_if(velocities, [](const auto& velocity) { return velocity.has_value(); }));
+  if (2 * moving >= views.size()) {
+    std::vector<SeenView> with_velocity;
+    for (size_t i = 0; i < views.size(); ++i) {
+      if (velocities[i]) {
+        with_velocity.push_back(std::move(views[i]));
+        with_velocity.back().view.velocity = *velocities[i];
+      }
+    }
+    views = std::move(with_velocity);
+  }
+  std::vector<SeenView> chosen;
+  const size_t count = std::min(most, views.size());
   for (size_t i = 0; i < count; ++i) {
-    const Candidate& one = candidates[i * candidates.size() / count];
-    chosen.number_of_keyframe[one.id.value] = static_cast<uint32_t>(chosen.views.size());
-    chosen.views.push_back(one.view);
+    chosen.push_back(std::move(views[i * views.size() / count]));
   }
   return chosen;
+}
+
+// A pose needs three points; with as few as that, one wrong one would move it far.
+void EraseWeakViews(std::vector<SeenView>& views) {
+  constexpr size_t kFewestLandmarks = 15;
+  std::erase_if(views, [](const SeenView& one) { return one.landmarks.size() < kFewestLandmarks; });
+}
+
+// Keeps the landmarks that `fewest` views see, and the views that see enough of these. Returns the
+// number of views that see each.
+std::map<LandmarkId, size_t> KeepTracks(size_t fewest, std::vector<SeenView>& views) {
+  while (true) {
+    std::map<LandmarkId, size_t> counts;
+    for (const SeenView& one : views) {
+      for (const auto& [id, seen] : one.landmarks) {
+        ++counts[id];
+      }
+    }
+    std::erase_if(counts, [&](const auto& one) { return one.second < fewest; });
+    for (SeenView& one : views) {
+      std::erase_if(one.landmarks, [&](const auto& seen) { return !counts.contains(seen.first); });
+    }
+    const size_t before = views.size();
+    EraseWeakViews(views);
+    if (views.size() == before) {
+      return counts;
+    }
+  }
 }
 
 // The raw pixel of a keypoint, before its shutter was corrected.
@@ -106,29 +149,45 @@ CalibrationProblem RecordedProblem(SystemOptions options, const CameraRecording&
   options.objects.enabled = false;
   const Sensor sensor = MakeSensor(options);
   System system(options, PipelineKind::kSequential);
+  const CameraModel model = ModelOf(sensor, options.depth.disparity_offset);
+  std::vector<SeenView> seen;
+  system.SetFrameCallback([&](const FrameReport& report) {
+    seen.push_back(SeenViewOf(*report.frame, report.landmarks, sensor, model));
+  });
   std::optional<InputError> failure;
-  for (size_t i = 0; i < frames && !IsRequested(cancellation); ++i) {
+  const auto build = [&](size_t i) -> std::optional<BuiltFrame> {
+    if (i >= frames) {
+      return std::nullopt;
+    }
     std::optional<ImageInput> image;
     try {
       image = recording.load(i, options.camera);
     } catch (const InputError& error) {
       failure = failure ? failure : error;  // the frame is left out, as in a run
+      return std::nullopt;
     }
-    if (image) {
-      image->masks.clear();
-      image->right_masks.clear();
-      system.Track(*image);
+    image->masks.clear();
+    image->right_masks.clear();
+    return system.Build(*image);
+  };
+  // Another thread builds the next frame while this one tracks.
+  auto next = std::async(std::launch::async, build, 0);
+  for (size_t i = 0; i < frames && !IsRequested(cancellation); ++i) {
+    std::optional<BuiltFrame> built = next.get();
+    next = std::async(std::launch::async, build, i + 1);
+    if (built) {
+      system.Track(std::move(*built));
     }
     on_frame();
   }
+  next.wait();
   if (failure && system.frames().empty()) {
     throw *failure;
   }
   system.Finish(cancellation);
   const auto map = system.map();
-  const CameraModel model = ModelOf(sensor, options.depth.disparity_offset);
   return map == nullptr ? CalibrationProblem()
-                        : MakeProblem(*map, sensor, model, system.trajectory());
+                        : MakeProblem(*map, sensor, model, system.trajectory(), std::move(seen));
 }
 
 bool IsEnoughToCalibrate(const CalibrationProblem& problem) {
@@ -173,11 +232,12 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
           "least {} and {}: film for longer, and move the camera",
           problem.views.size(), problem.CountObservations(), kFewestViews, kFewestObservations));
     }
-    calibrated.result = CalibrateCamera(problem, model, calibration.camera);
+    // What the user gave counts until the recording says otherwise; a guess does not.
+    calibrated.result =
+        CalibrateCamera(problem, calibration.camera.guess ? model : given, calibration.camera);
     calibrated.problem = std::move(problem);
     calibrated.passes = pass;
-    const bool is_settled =
-        IsWithinErrors(model, calibrated.result.model, calibrated.result.evidence);
+    const bool is_settled = IsSettled(model, calibrated.result.model, calibrated.result.evidence);
     model = calibrated.result.model;
     if (is_settled) {
       break;
@@ -189,22 +249,11 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
         "chance explains, expected one camera without zoom, autofocus and stabilisation",
         calibrated.result.evidence.jackknife_factor));
   }
-  // Also what an earlier pass has changed is calibrated.
-  CameraCalibrationResult& result = calibrated.result;
-  result.given = given;
-  if (calibrated.passes > 1) {
+  calibrated.result.given = given;
+  if (calibration.camera.guess) {
     CameraAdjustment fixed(calibrated.problem, given, {});
     fixed.Solve({});
-    result.median_error_before = fixed.MedianError();
-  }
-  result.is_changed = false;
-  for (const ParameterEvidence& one : result.evidence.parameters) {
-    if (one.parameter.ValueIn(given) != one.parameter.ValueIn(model)) {
-      result.is_changed = true;
-      if (!result.IsCalibrated(one.parameter.name)) {
-        result.calibrated.push_back(one.parameter.name);
-      }
-    }
+    calibrated.result.median_error_before = fixed.MedianError();
   }
   return calibrated;
 }
@@ -217,47 +266,76 @@ CameraModel ModelOf(const Sensor& sensor, double disparity_offset) {
           .is_pair = sensor.IsStereo()};
 }
 
+SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, const Sensor& sensor,
+                    const CameraModel& model) {
+  SeenView seen{.view = {.timestamp = frame.timestamp, .cam_from_world = {}, .velocity = {}},
+                .landmarks = {}};
+  const FrameFeatures& features = frame.features;
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    if (!landmarks[i].IsValid()) {
+      continue;
+    }
+    const double depth = static_cast<double>(features.depth[i]);
+    const auto level = static_cast<size_t>(features.keypoints[i].level);
+    seen.landmarks.emplace_back(
+        landmarks[i],
+        CalibrationObservation{
+            .view = 0,
+            .raw = RawPixelOf(sensor, frame, i),
+            .sigma =
+                sensor.depth_error.pixel_sigma * static_cast<double>(sensor.levels.scale[level]),
+            .disparity = depth > 0.0 ? sensor.camera.bf / depth + model.disparity_offset : 0.0});
+  }
+  return seen;
+}
+
 CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const CameraModel& model,
-                               const Trajectory& trajectory) {
-  ChosenViews chosen = ChooseViews(map, trajectory);
+                               const Trajectory& trajectory, std::vector<SeenView> frames) {
+  std::vector<SeenView> views = Keyframes(map, sensor, model);
+  std::set<double> known;
+  for (const SeenView& one : views) {
+    known.insert(one.view.timestamp);
+  }
+  for (SeenView& one : frames) {
+    const StampedPose* const pose = PoseAt(trajectory, one.view.timestamp);
+    if (pose != nullptr && !known.contains(one.view.timestamp)) {
+      one.view.cam_from_world = Inverse(pose->world_from_cam);
+      views.push_back(std::move(one));
+    }
+  }
+  for (SeenView& one : views) {
+    // A point behind its image has no error that could become smaller.
+    std::erase_if(one.landmarks, [&](const auto& seen) {
+      const Landmark* const landmark = map.landmarks().Find(seen.first);
+      return landmark == nullptr || (one.view.cam_from_world * landmark->position).z() <= 0.0;
+    });
+  }
+  EraseWeakViews(views);
+  views = Chosen(std::move(views), trajectory, kMostViews);
+  const std::map<LandmarkId, size_t> counts = KeepTracks(sensor.IsMonocular() ? 4 : 3, views);
+  std::vector<LandmarkId> ids;
+  for (const auto& [id, count] : counts) {
+    ids.push_back(id);
+  }
+  std::ranges::stable_sort(ids, std::greater(), [&](LandmarkId id) { return counts.at(id); });
+  ids.resize(std::min(ids.size(), kMostPoints));
   CalibrationProblem problem;
   problem.has_depth = !sensor.IsMonocular();
   problem.disparity_sigma = sensor.depth_error.disparity_sigma;
-  problem.views = std::move(chosen.views);
-  const size_t fewest = sensor.IsMonocular() ? 4 : 3;
-  struct Track {
-    Eigen::Vector3d position;
-    std::vector<CalibrationObservation> seen;
-  };
-  std::vector<Track> tracks;
-  map.landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
-    Track track{.position = landmark.position, .seen = {}};
-    for (const Observation& observation : landmark.observations) {
-      const auto number = chosen.number_of_keyframe.find(observation.keyframe.value);
-      if (number == chosen.number_of_keyframe.end()) {
-        continue;
+  problem.observations.resize(ids.size());
+  std::map<LandmarkId, size_t> point_of;
+  for (const LandmarkId id : ids) {
+    point_of[id] = problem.points.size();
+    problem.points.push_back(map.landmarks().At(id).position);
+  }
+  for (SeenView& one : views) {
+    for (auto& [id, seen] : one.landmarks) {
+      if (const auto point = point_of.find(id); point != point_of.end()) {
+        seen.view = static_cast<uint32_t>(problem.views.size());
+        problem.observations[point->second].push_back(seen);
       }
-      const Frame& frame = *map.keyframes().At(observation.keyframe).frame;
-      const FrameFeatures& features = frame.features;
-      const double depth = static_cast<double>(features.depth[observation.keypoint]);
-      const auto level = static_cast<size_t>(features.keypoints[observation.keypoint].level);
-      track.seen.push_back(
-          {.view = number->second,
-           .raw = RawPixelOf(sensor, frame, observation.keypoint),
-           .sigma =
-               sensor.depth_error.pixel_sigma * static_cast<double>(sensor.levels.scale[level]),
-           .disparity = depth > 0.0 ? sensor.camera.bf / depth + model.disparity_offset : 0.0});
     }
-    if (track.seen.size() >= fewest) {
-      tracks.push_back(std::move(track));
-    }
-  });
-  std::ranges::stable_sort(tracks, std::greater(),
-                           [](const Track& one) { return one.seen.size(); });
-  tracks.resize(std::min(tracks.size(), kMostPoints));
-  for (Track& track : tracks) {
-    problem.points.push_back(track.position);
-    problem.observations.push_back(std::move(track.seen));
+    problem.views.push_back(one.view);
   }
   return problem;
 }

@@ -5,10 +5,12 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/calibrate_camera.h"
 #include "calibration/camera_problem.h"
+#include "hullslam/frame/frame.h"
 #include "hullslam/frame/image_input.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/trajectory.h"
@@ -65,11 +67,20 @@ void ApplyModel(const CameraModel& model, SystemOptions& options);
 // in the map are without it.
 CameraModel ModelOf(const Sensor& sensor, double disparity_offset);
 
-// The calibration of the camera of a finished run without objects: its keyframes and the landmarks
-// that enough of them see. Velocities are those of `trajectory`, which has the poses of all frames;
-// if most keyframes have no neighbours in it, all velocities are zero. Long runs give at most 150
-// keyframes, evenly chosen, and 6000 landmarks.
+// An image of a run, and the landmarks that it shows.
+struct SeenView {
+  CalibrationView view;
+  std::vector<std::pair<LandmarkId, CalibrationObservation>> landmarks;
+};
+// With the time stamp of the frame. It has one landmark per keypoint, invalid where it shows none.
+SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, const Sensor& sensor,
+                    const CameraModel& model);
+
+// The calibration of the camera of a finished run without objects: its keyframes, the images of
+// `frames`, and the landmarks that enough of them see. Poses and velocities of frames are those of
+// `trajectory`; if most images have no neighbours in it, all velocities are zero. Long runs give at
+// most 150 images, evenly chosen, and 6000 landmarks.
 CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const CameraModel& model,
-                               const Trajectory& trajectory);
+                               const Trajectory& trajectory, std::vector<SeenView> frames = {});
 
 }  // namespace hullslam

@@ -53,26 +53,24 @@ std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2
   }
   const Eigen::Matrix3d first_from_second = -linear.inverse() * mixed.transpose();
   const Eigen::Matrix3d reduced = quadratic + mixed * first_from_second;
-  // Of all a with 4 a c - b^2 = 1, the one with the smallest a^T reduced a belongs to the largest
-  // eigenvalue of this problem. The small multiple of the identity keeps `reduced`, which is
-  // singular if all points are on one ellipse, positive definite; it changes a by rounding errors
-  // only.
-  Eigen::Matrix3d constraint;
-  constraint << 0.0, 0.0, 2.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0;
-  const Eigen::Matrix3d definite =
-      reduced + 1e-14 * quadratic.trace() * Eigen::Matrix3d::Identity();
-  if (!definite.allFinite()) {
+  Eigen::Matrix3d problem;  // `reduced`, times the inverse of the matrix of 4 a c - b^2 = 1
+  problem << 0.5 * reduced.row(2), -reduced.row(1), 0.5 * reduced.row(0);
+  if (!problem.allFinite()) {
     return std::nullopt;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(constraint, definite);
-  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[2] > 0.0)) {
-    return std::nullopt;
+  const Eigen::Matrix3d vectors =
+      Eigen::EigenSolver<Eigen::Matrix3d>(problem).eigenvectors().real();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = vectors.col(i);
+    if (4.0 * a[0] * a[2] - a[1] * a[1] > 0.0) {  // only one of the three is an ellipse
+      const Eigen::Vector3d b = first_from_second * a;
+      Eigen::Matrix3d conic;
+      conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1],
+          b[2];
+      return conic;
+    }
   }
-  const Eigen::Vector3d a = solver.eigenvectors().col(2);
-  const Eigen::Vector3d b = first_from_second * a;
-  Eigen::Matrix3d conic;
-  conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1], b[2];
-  return conic;
+  return std::nullopt;
 }
 
 }  // namespace

@@ -35,6 +35,17 @@ std::string ListPresets() {
 
 }  // namespace
 
+void AddSelection(CLI::App& app, FrameSelection& selection) {
+  app.add_option("--first", selection.first,
+                 "number of the first frame, counted from 0 (default: 0)")
+      ->check(WholeNumber(0));
+  app.add_option("--last", selection.last,
+                 "number of the last frame, inclusive (default: last of the sequence)")
+      ->check(WholeNumber(0));
+  app.add_option("--stride", selection.stride, "use every n-th frame only (default: 1)")
+      ->check(WholeNumber(1));
+}
+
 void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings) {
   app.add_option("--settings", settings, "settings file (" + rule + ")");
 }

@@ -16,6 +16,7 @@ class App;
 namespace hullslam {
 
 // Adds --settings. `rule` is its default in words.
+void AddSelection(CLI::App& app, FrameSelection& selection);  // --first, --last, --stride
 void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings);
 // Adds --preset.
 void AddPresetArgument(CLI::App& app, std::string& preset);

@@ -125,14 +125,7 @@ void AddCommonArguments(CLI::App& app, RunArguments& arguments) {
                  "seed of the random choices in initialisation, relocalisation and loop closing")
       ->check(WholeNumber(0))
       ->capture_default_str();
-  app.add_option("--first", arguments.selection.first,
-                 "number of the first frame, counted from 0 (default: 0)")
-      ->check(WholeNumber(0));
-  app.add_option("--last", arguments.selection.last,
-                 "number of the last frame, inclusive (default: last of the sequence)")
-      ->check(WholeNumber(0));
-  app.add_option("--stride", arguments.selection.stride, "use every n-th frame only (default: 1)")
-      ->check(WholeNumber(1));
+  AddSelection(app, arguments.selection);
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
   AddReportFlag(app, arguments.report);

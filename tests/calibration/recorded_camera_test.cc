@@ -39,6 +39,33 @@ TEST_P(MapProblem, TheResidualsOfATrueMapAreSmall) {
   EXPECT_LT(adjustment.MedianError(), 1.0);
 }
 
+// Keyframes are few; what other frames saw makes the errors smaller.
+TEST(MakeProblem, HasTheFramesBetweenKeyframes) {
+  const SyntheticWorld world({}, SyntheticSensor());
+  const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
+  const CameraModel model = ModelOf(world.sensor(), 0.0);
+  const Trajectory path = PathOf(world, 30);
+  const Keyframe& keyframe = made.map.keyframes().At(KeyframeId(0));
+  SeenView between = SeenViewOf(*keyframe.frame, keyframe.landmarks, world.sensor(), model);
+  ASSERT_GT(between.landmarks.size(), 30U);
+  const auto at = [&](SeenView view, double frame) {
+    view.view.timestamp = frame / world.sensor().frames_per_second;
+    return view;
+  };
+  SeenView weak = at(between, 8);
+  weak.landmarks.resize(3);
+  const CalibrationProblem without = MakeProblem(made.map, world.sensor(), model, path);
+  const CalibrationProblem with =
+      MakeProblem(made.map, world.sensor(), model, path,
+                  {at(between, 7), weak, at(between, 10), at(between, 7.5)});
+  // Frame 8 shows too little, frame 10 is a keyframe, and 7.5 has no pose.
+  ASSERT_EQ(without.views.size(), 4U);
+  ASSERT_EQ(with.views.size(), 5U);
+  EXPECT_EQ(with.views[1].timestamp, at(between, 7).view.timestamp);
+  EXPECT_GT(with.views[1].velocity.linear.norm(), 0.0);
+  EXPECT_GT(with.CountObservations(), without.CountObservations() + 15);
+}
+
 // A map has depths without the offset; what was measured has it.
 TEST(MakeProblem, DisparitiesAreThoseThatWereMeasured) {
   const SyntheticWorld world({}, SyntheticSensor());

@@ -10,6 +10,7 @@
 #include "support/plane_sequence.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"
+#include "support/running_program.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {

@@ -37,6 +37,7 @@ void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
   AddSettingsArgument(app, help.settings, run.settings);
   AddOverrides(app, run.overrides);
   AddVocabularyArgument(app, run.vocabulary);
+  AddSelection(app, run.selection);
   app.add_flag("--from-nothing", run.is_unknown,
                "only the size of the images is known: the focal length of the settings and the "
                "lens are not used");
