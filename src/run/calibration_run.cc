@@ -81,19 +81,17 @@ std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
   }
   const bool is_pair = MakeSensor(options).IsStereo();
   std::unique_ptr<Progress> progress;
-  int shown_pass = -1;
   RecordedCalibrationOptions calibration{
       .camera = {}, .max_passes = run.max_passes, .cancellation = &Interruption()};
   // The images of a pair are rectified, so they have no distortion.
   calibration.camera.choice.distortion = !is_pair;
   calibration.camera.choice.disparity = options.sensor == SensorKind::kRgbd;
   calibration.on_frame = [&](int pass, size_t frame, size_t frames) {
-    if (pass != shown_pass) {
+    if (frame == 1) {
       if (progress) {
         progress->Clear();
       }
       progress = std::make_unique<Progress>(frames, run.is_quiet);
-      shown_pass = pass;
     }
     progress->Show(frame, [pass] {
       return pass == 0 ? std::string("looking for the focal length") : fmt::format("pass {}", pass);

@@ -37,9 +37,8 @@ struct CalibratedRun {
   std::vector<std::string> sequences;
 };
 
-// Runs SLAM on the sequences and calibrates their camera. Shows the progress. Null, with a message,
-// if it is interrupted. Throws InputError for bad input, for cameras of different sizes, and if
-// SLAM finds too little.
+// Calibrates the camera of the sequences. Null, with a message, if it is interrupted. Throws
+// InputError for bad input, for cameras of different sizes, and if SLAM finds too little.
 std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run);
 
 // Prints a table of the numbers of the camera, and which motion would determine the others.

@@ -39,6 +39,15 @@ TEST_F(Calibrate, KeepsAndSaysWhatAShortRecordingDoesNotDetermine) {
   EXPECT_EQ(ReadSettings(output_).camera.fx, 551.0) << result.output;
 }
 
+TEST_F(Calibrate, CheckOnlySaysWhatIsKnown) {
+  const RenderedDesk desk(60);
+  const ProgramResult result = Run(desk.path(), {"--check", "--last", "49"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("\nreadout_time "), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find(" has the camera"), std::string::npos) << result.output;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
 TEST_F(Calibrate, RefusesWhatItCannotRead) {
   const ProgramResult missing = Run("/no/such/sequence", {});
   EXPECT_EQ(missing.exit_code, 2);

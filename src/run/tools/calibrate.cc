@@ -26,6 +26,7 @@ struct CalibrateArguments {
   CalibrationRun run;
   std::filesystem::path output = "camera.yaml";
   std::string format = "hullslam";
+  bool is_check = false;
 };
 
 void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
@@ -44,6 +45,9 @@ void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
   app.add_option("--output", arguments.output, "file that is written")
       ->type_name("FILE")
       ->capture_default_str();
+  app.add_flag(
+      "--check", arguments.is_check,
+      "only say what the recording tells about the camera, in one run; no file is written");
   app.add_option("--to", arguments.format, "format of the file")
       ->check(CLI::IsMember(CameraFormatNames()))
       ->capture_default_str();
@@ -72,23 +76,29 @@ int RunCalibrate(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  ProbeFile(arguments.output);
+  if (arguments.is_check) {
+    arguments.run.max_passes = 1;
+  } else {
+    ProbeFile(arguments.output);
+  }
   CatchInterrupts();
   const std::optional<CalibratedRun> calibrated = RunCalibration(arguments.run);
   if (!calibrated) {
     return kFailed;
   }
   PrintCalibration(*calibrated);
+  if (arguments.is_check) {
+    return kDone;
+  }
   const auto names = CameraFormatNames();
-  const auto format =
-      static_cast<CameraFormat>(std::ranges::find(names, arguments.format) - names.begin());
+  const auto format = std::ranges::find(names, arguments.format) - names.begin();
   const SystemOptions& options = calibrated->options;
   const std::vector<NamedSetting> extra = {
       {"Camera.readout_time", fmt::format("{}", options.readout_time)},
       {"depth.disparity_offset", fmt::format("{}", options.depth.disparity_offset)}};
   WriteFileAtomically(arguments.output,
-                      CameraFileText(format, options.camera, options.frames_per_second, extra,
-                                     OriginOf(*calibrated)));
+                      CameraFileText(static_cast<CameraFormat>(format), options.camera,
+                                     options.frames_per_second, extra, OriginOf(*calibrated)));
   Print("{} has the camera\n", arguments.output.string());
   return kDone;
 }
