@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "map/keyframe_graph.h"
+#include "map/made_map.h"
 
 namespace hullslam {
 namespace {
