@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "calibration/made_recording.h"
 
@@ -100,6 +102,25 @@ TEST(MeasureEvidence, TwoCamerasAreAContradictionAndStandingStillIsNone) {
           << EvidenceOf(ShortRecording(motion, has_depth, 0)).jackknife_factor;
     }
   }
+}
+
+// A stabilised video is a window that moves in the images.
+TEST(MeasureEvidence, AWindowThatMovesIsAContradiction) {
+  MadeRecordingOptions options = ShortRecording(kHandHeld, false, 3);
+  options.views = 60;
+  options.points = 500;
+  CalibrationProblem problem = MadeRecording(options).problem();
+  for (std::vector<CalibrationObservation>& observations : problem.observations) {
+    for (CalibrationObservation& seen : observations) {
+      const double time = problem.views[seen.view].timestamp;
+      seen.raw += Eigen::Vector2d(30.0 * std::sin(3.9 * time), 22.0 * std::sin(5.1 * time + 1.0));
+    }
+  }
+  CameraAdjustment adjustment(problem, options.truth,
+                              ParametersOf(options.truth, {}, false, 300.0));
+  adjustment.Solve({});
+  EXPECT_TRUE(MeasureEvidence(adjustment).IsContradictory())
+      << MeasureEvidence(adjustment).jackknife_factor;
 }
 
 TEST(AdviceFor, NamesTheMotionThatWouldHelp) {
