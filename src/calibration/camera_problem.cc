@@ -290,7 +290,8 @@ Eigen::Vector3d CameraAdjustment::ResidualOf(const CalibrationObservation& seen,
 }
 
 // A wrong point may lie in the centre of a camera, where a tiny step moves its image anywhere: its
-// derivatives are so large that no step of the others is possible.
+// derivatives are so large that no step of the others is possible. A point behind a camera has an
+// infinite error.
 void CameraAdjustment::DropPointsInCameras() {
   constexpr size_t kFewest = 2;
   const double nearest =

@@ -24,6 +24,8 @@ namespace {
 
 constexpr size_t kFewestViews = 8;
 constexpr size_t kFewestObservations = 500;
+constexpr size_t kMostViews = 150;
+constexpr size_t kMostPoints = 6000;
 
 // Whether no number of a camera has changed by more than what moves pixels at the border by a
 // quarter, or by more than chance explains.
@@ -35,9 +37,6 @@ bool IsSettled(const CameraModel& before, const CameraModel& after,
            std::max(kSteps * one.parameter.step, one.bundle_sigma);
   });
 }
-
-constexpr size_t kMostViews = 150;
-constexpr size_t kMostPoints = 6000;
 
 // The velocity of the camera at the time of a pose of the trajectory, from its neighbours. Null if
 // they are too far away in time.
@@ -304,11 +303,8 @@ CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const Camer
     }
   }
   for (SeenView& one : views) {
-    // A point behind its image has no error that could become smaller.
-    std::erase_if(one.landmarks, [&](const auto& seen) {
-      const Landmark* const landmark = map.landmarks().Find(seen.first);
-      return landmark == nullptr || (one.view.cam_from_world * landmark->position).z() <= 0.0;
-    });
+    std::erase_if(one.landmarks,
+                  [&](const auto& seen) { return !map.landmarks().Contains(seen.first); });
   }
   EraseWeakViews(views);
   views = Chosen(std::move(views), trajectory, kMostViews);

@@ -87,7 +87,7 @@ std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
   calibration.camera.choice.distortion = !is_pair;
   calibration.camera.choice.disparity = options.sensor == SensorKind::kRgbd;
   calibration.on_frame = [&](int pass, size_t frame, size_t frames) {
-    if (frame == 1) {
+    if (!progress || frame == 1) {
       if (progress) {
         progress->Clear();
       }

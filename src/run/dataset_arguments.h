@@ -15,8 +15,8 @@ class App;
 
 namespace hullslam {
 
-// Adds --settings. `rule` is its default in words.
 void AddSelection(CLI::App& app, FrameSelection& selection);  // --first, --last, --stride
+// Adds --settings. `rule` is its default in words.
 void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings);
 // Adds --preset.
 void AddPresetArgument(CLI::App& app, std::string& preset);
