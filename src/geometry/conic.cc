@@ -53,24 +53,22 @@ std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2
   }
   const Eigen::Matrix3d first_from_second = -linear.inverse() * mixed.transpose();
   const Eigen::Matrix3d reduced = quadratic + mixed * first_from_second;
-  Eigen::Matrix3d problem;  // `reduced`, times the inverse of the matrix of 4 a c - b^2 = 1
-  problem << 0.5 * reduced.row(2), -reduced.row(1), 0.5 * reduced.row(0);
-  if (!problem.allFinite()) {
+  if (!reduced.allFinite()) {
     return std::nullopt;
   }
-  const Eigen::Matrix3d vectors =
-      Eigen::EigenSolver<Eigen::Matrix3d>(problem).eigenvectors().real();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Vector3d a = vectors.col(i);
-    if (4.0 * a[0] * a[2] - a[1] * a[1] > 0.0) {  // only one of the three is an ellipse
-      const Eigen::Vector3d b = first_from_second * a;
-      Eigen::Matrix3d conic;
-      conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1],
-          b[2];
-      return conic;
-    }
+  Eigen::Matrix3d constraint;  // a^T constraint a = 4 a0 a2 - a1^2 > 0: an ellipse
+  constraint << 0.0, 0.0, 2.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0;
+  // `reduced` is singular if the points lie on a conic exactly.
+  const Eigen::Matrix3d weight = reduced + 1e-14 * quadratic.trace() * Eigen::Matrix3d::Identity();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(constraint, weight);
+  const Eigen::Vector3d a = solver.eigenvectors().col(2);  // only one of the three is an ellipse
+  if (!(solver.eigenvalues()[2] > 0.0 && a.allFinite())) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  const Eigen::Vector3d b = first_from_second * a;
+  Eigen::Matrix3d conic;
+  conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1], b[2];
+  return conic;
 }
 
 }  // namespace
