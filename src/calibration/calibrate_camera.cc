@@ -14,8 +14,11 @@ std::vector<CameraParameter> Determined(const CameraEvidence& evidence) {
   for (const ParameterEvidence& one : evidence.parameters) {
     const bool is_known =
         one.parameter.IsCoefficient() ? evidence.IsDistortionDetermined() : one.IsDetermined();
-    if (one.parameter.IsNuisance() ||
-        (is_known && (!one.parameter.IsCentring() || evidence.IsCentringDetermined()))) {
+    const bool is_whole_known = one.parameter.IsCentring() ? evidence.IsCentringDetermined()
+                                : one.parameter.kind == CameraParameter::Kind::kDepthPose
+                                    ? evidence.IsDepthPoseDetermined()
+                                    : true;
+    if (one.parameter.IsNuisance() || (is_known && is_whole_known)) {
       determined.push_back(one.parameter);
     }
   }
@@ -46,6 +49,10 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
                                         const CameraCalibrationOptions& options) {
   CameraAdjustment fixed(problem, given, {});
   fixed.Solve({});
+  CalibrationProblem weighted = fixed.problem();
+  weighted.disparity_sigma = fixed.DisparitySigma();
+  fixed = CameraAdjustment(std::move(weighted), given, {});
+  fixed.Solve({});
   CameraModel start = given;
   std::vector<CameraParameter> parameters =
       ParametersOf(given, options.choice, problem.has_depth, MedianSpeed(problem, given));
@@ -69,6 +76,13 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
   if (AgreesWithTrust(free.model(), problem, options)) {
     start = WithFocalLength(given, options.trusted_focal_length);
     std::erase_if(parameters, &CameraParameter::IsFocalLength);
+    hold_others(parameters);
+  }
+  // The pose of depth images is seldom determined, and the other numbers are known less with it.
+  const auto is_of_depth_pose = [](const CameraParameter& one) {
+    return one.kind == CameraParameter::Kind::kDepthPose;
+  };
+  if (!evidence.IsDepthPoseDetermined() && std::erase_if(parameters, is_of_depth_pose) > 0) {
     hold_others(parameters);
   }
   // What is not determined is held, so that the rest may become determined or not. Two rounds

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/camera_model.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,25 @@ double StepOfCoefficient(const CameraModel& model, double PinholeCamera::*field)
   const Eigen::Vector2d undistorted = camera.Undistort(corner);
   const double change = (moved.camera.Distort(undistorted) - camera.Distort(undistorted)).norm();
   return kSmall / std::max(change, 1e-9);
+}
+
+void AddDepthPose(const PinholeCamera& camera, double speed,
+                  std::vector<CameraParameter>& parameters) {
+  if (speed > 0.0) {
+    parameters.push_back(
+        {.kind = Kind::kDepthTime, .name = "depth_time", .unit = "s", .step = 1.0 / speed});
+  }
+  constexpr double kUsualDepth = 1.5;  // m
+  const double turn = 1.0 / camera.fx;
+  for (int i = 0; i < 6; ++i) {
+    const bool is_turn = i < 3;
+    parameters.push_back(
+        {.kind = Kind::kDepthPose,
+         .index = i,
+         .name = fmt::format("depth_{}_{}", is_turn ? "turn" : "shift", "xyz"[i % 3]),
+         .unit = is_turn ? "rad" : "m",
+         .step = is_turn ? turn : turn * kUsualDepth});
+  }
 }
 
 }  // namespace
@@ -57,6 +78,10 @@ double CameraParameter::ValueIn(const CameraModel& model) const {
       return model.disparity_offset;
     case Kind::kDepthScale:
       return model.depth_scale;
+    case Kind::kDepthTime:
+      return model.depth_time;
+    case Kind::kDepthPose:
+      return model.depth_pose[index];
   }
   return 0.0;
 }
@@ -86,6 +111,12 @@ void CameraParameter::Move(double steps, CameraModel& model) const {
       return;
     case Kind::kDepthScale:
       model.depth_scale *= std::exp(steps * step);
+      return;
+    case Kind::kDepthTime:
+      model.depth_time += steps * step;
+      return;
+    case Kind::kDepthPose:
+      model.depth_pose[index] += steps * step;
       return;
   }
 }
@@ -147,6 +178,9 @@ std::vector<CameraParameter> ParametersOf(const CameraModel& model, const Calibr
                           .prior_steps = 1.0,
                           .expected = 1.0});
   }
+  if (choice.depth_pose && has_depth && !model.is_pair) {
+    AddDepthPose(camera, speed, parameters);
+  }
   return parameters;
 }
 
@@ -161,6 +195,10 @@ void ExpectNear(const CameraModel& guess, std::vector<CameraParameter>& paramete
         return 2.0;
       case Kind::kDepthScale:
         return kDepthScaleSigma;
+      case Kind::kDepthTime:
+        return 0.06;
+      case Kind::kDepthPose:
+        return 0.03;
       case Kind::kField:
         break;
     }

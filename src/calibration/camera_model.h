@@ -27,6 +27,11 @@ struct CameraModel {
   // Whether bf is the baseline of a real pair, so that it grows with the focal length. That of a
   // depth camera is only the unit of its disparities.
   bool is_pair = false;
+  // When and where depth images were taken, beside what their time stamps and their registration to
+  // the colour image say: so many seconds after the colour image, and by the pose
+  // depth_from_colour, a rotation vector (rad) and a translation (m).
+  double depth_time = 0.0;
+  Eigen::Matrix<double, 6, 1> depth_pose = Eigen::Matrix<double, 6, 1>::Zero();
 
   // Seconds between the exposure of the middle of the image and that of a raw pixel.
   double ExposureOf(const Eigen::Vector2d& raw) const;
@@ -49,9 +54,18 @@ inline constexpr const char* kDepthScaleName = "depth_scale";
 
 // One number of a CameraModel.
 struct CameraParameter {
-  enum class Kind { kFocalLength, kField, kReadout, kDisparityOffset, kDepthScale };
+  enum class Kind {
+    kFocalLength,
+    kField,
+    kReadout,
+    kDisparityOffset,
+    kDepthScale,
+    kDepthTime,
+    kDepthPose
+  };
   Kind kind = Kind::kField;
   double PinholeCamera::*field = nullptr;  // of kField
+  int index = 0;                           // of kDepthPose
   std::string name;                        // of the setting, without "Camera."
   std::string unit;                        // "px", "s" or ""
   // The change of the number that moves pixels at the border of the image by about 1 px. All
@@ -85,7 +99,8 @@ struct CalibrationChoice {
   bool principal_point = true;
   bool distortion = true;
   bool readout = true;
-  bool disparity = true;  // only with depth
+  bool disparity = true;   // only with depth
+  bool depth_pose = true;  // of depth images, with their time
 };
 
 // The parameters of a camera. With Brown's lens, k1, k2, p1 and p2, and the others that are not 0;

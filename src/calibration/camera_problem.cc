@@ -90,12 +90,14 @@ void CalibrationProblem::Append(const CalibrationProblem& other) {
   }
   has_depth = other.has_depth;
   disparity_sigma = other.disparity_sigma;
+  known_depth_pose = other.known_depth_pose;
 }
 
 CameraAdjustment::CameraAdjustment(CalibrationProblem problem, CameraModel model,
                                    std::vector<CameraParameter> parameters)
     : problem_(std::move(problem)),
-      residual_{.disparity_sigma = problem_.disparity_sigma},
+      residual_{.disparity_sigma = problem_.disparity_sigma,
+                .known_depth_pose = problem_.known_depth_pose},
       model_(model),
       parameters_(std::move(parameters)),
       loss_scale_(kCauchyScale) {
@@ -434,6 +436,23 @@ double CameraAdjustment::MedianError() const {
   return MedianOf([&](const CalibrationObservation& seen, const Eigen::Vector3d& in_camera) {
     return seen.sigma * ResidualOf(seen, in_camera).head<2>().norm();
   });
+}
+
+double CameraAdjustment::DisparitySigma() const {
+  constexpr double kLeast = 0.05;            // px
+  constexpr double kSigmaOfMedian = 1.4826;  // of normal errors
+  std::vector<double> errors;
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    for (const CalibrationObservation& seen : problem_.observations[i]) {
+      if (seen.disparity > 0.0) {
+        const Rigid3& cam_from_world = problem_.views[seen.view].cam_from_world;
+        errors.push_back(std::abs(ResidualOf(seen, cam_from_world * problem_.points[i]).z()));
+      }
+    }
+  }
+  const double sigma = problem_.disparity_sigma;
+  return errors.empty() ? sigma
+                        : std::max(kLeast, kSigmaOfMedian * sigma * Median(std::move(errors)));
 }
 
 double MedianSpeed(const CalibrationProblem& problem, const CameraModel& model) {

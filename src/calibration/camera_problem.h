@@ -29,6 +29,8 @@ struct CalibrationProblem {
   std::vector<std::vector<CalibrationObservation>> observations;  // of each point
   double disparity_sigma = 1.0;                                   // px
   bool has_depth = false;
+  // CameraModel::depth_pose of the run, which has taken it out of the depths already.
+  Eigen::Matrix<double, 6, 1> known_depth_pose = Eigen::Matrix<double, 6, 1>::Zero();
 
   size_t CountObservations() const;
   // Adds another recording of the same camera.
@@ -80,6 +82,9 @@ class CameraAdjustment {
   Eigen::VectorXd StepWithout(const std::vector<uint8_t>& is_left_out) const;
   // The median length of the raw reprojection errors, px.
   double MedianError() const;
+  // The standard deviation of disparities that their errors have, px; that of the problem without
+  // depth.
+  double DisparitySigma() const;
 
  private:
   struct PointSystem;

@@ -21,9 +21,12 @@ constexpr size_t kPieces = 10;
 constexpr double kFocalBound = 0.005;  // share of f
 // px. Targets tell the principal point about as well as this, so a worse one is no better.
 constexpr double kCentreBound = 0.75;
-constexpr double kDistortionBound = 1.0;  // px, near a corner
-constexpr double kReadoutBound = 1.5e-3;  // s
-constexpr double kDisparityBound = 0.1;   // px
+constexpr double kDistortionBound = 1.0;    // px, near a corner
+constexpr double kReadoutBound = 1.5e-3;    // s
+constexpr double kDisparityBound = 0.1;     // px
+constexpr double kDepthTimeBound = 1.5e-3;  // s
+constexpr double kDepthTurnBound = 2.0;     // px in the middle of the image
+constexpr double kDepthShiftBound = 4e-3;   // m
 
 double BoundOf(const CameraParameter& parameter, const CameraModel& model) {
   switch (parameter.kind) {
@@ -33,6 +36,10 @@ double BoundOf(const CameraParameter& parameter, const CameraModel& model) {
       return kReadoutBound;
     case Kind::kDisparityOffset:
       return kDisparityBound;
+    case Kind::kDepthTime:
+      return kDepthTimeBound;
+    case Kind::kDepthPose:
+      return parameter.unit == "m" ? kDepthShiftBound : kDepthTurnBound / model.camera.fx;
     case Kind::kField:
     case Kind::kDepthScale:
       break;
@@ -123,6 +130,13 @@ bool CameraEvidence::IsCentringDetermined() const {
   return std::ranges::all_of(parameters, [](const ParameterEvidence& one) {
     return !one.parameter.IsCentring() || one.parameter.IsCoefficient() || one.IsDetermined();
   });
+}
+
+bool CameraEvidence::IsDepthPoseDetermined() const {
+  return IsCentringDetermined() &&
+         std::ranges::all_of(parameters, [](const ParameterEvidence& one) {
+           return one.parameter.kind != Kind::kDepthPose || one.IsDetermined();
+         });
 }
 
 const ParameterEvidence* CameraEvidence::Find(const std::string& name) const {
@@ -230,6 +244,9 @@ std::string AdviceFor(const ParameterEvidence& one, const MotionSummary& motion)
              "direction";
     case Kind::kDepthScale:
       break;
+    case Kind::kDepthTime:
+      return "move the camera faster, and look at walls that are tilted";
+    case Kind::kDepthPose:
     case Kind::kDisparityOffset:
       return "look at things at different distances, near and far, while the camera moves";
     case Kind::kField:

@@ -30,6 +30,9 @@ struct CameraEvidence {
   double distortion_sigma = -1.0;
   bool IsDistortionDetermined() const;
   bool IsCentringDetermined() const;  // both numbers of the principal point
+  // Whether all numbers of the pose of depth images are determined, and the axis of the lens: where
+  // the axis is wrong, another pose makes up for most of it.
+  bool IsDepthPoseDetermined() const;
   // How much larger errors are than those of a bundle adjustment whose errors are independent.
   double jackknife_factor = 1.0;
   // Whether pieces of the recording contradict each other, far beyond what neighbouring errors

@@ -293,7 +293,7 @@ PinholeCamera GuessCamera(SystemOptions options, const CameraRecording& recordin
     if (!IsEnoughToCalibrate(problem)) {
       continue;
     }
-    const Fit fit = FitOf(problem, ModelOf(MakeSensor(options), 0.0));
+    const Fit fit = FitOf(problem, ModelOf(MakeSensor(options), options.depth));
     best = fit.score > best.score ? fit : best;
   }
   if (best.score == 0.0) {

@@ -11,6 +11,31 @@ namespace {
 
 constexpr double kDifference = 1e-2;  // steps of a parameter
 
+// When and from where the depth of a point was measured.
+struct DepthView {
+  double seconds = 0.0;  // after the exposure of the middle of the image
+  Eigen::Matrix3d turn;  // depth_from_colour
+  Eigen::Vector3d shift;
+
+  Eigen::Vector3d InView(const PointVelocity& velocity, const Eigen::Vector3d& point) const {
+    return turn * MovedPoint(point, velocity, seconds) + shift;
+  }
+};
+
+DepthView DepthViewOf(const CameraModel& model, const CalibrationObservation& seen,
+                      const Eigen::Matrix<double, 6, 1>& known_depth_pose) {
+  const Eigen::Matrix<double, 6, 1> pose = model.depth_pose - known_depth_pose;
+  return {.seconds = model.ExposureOf(seen.raw) + seen.depth_delay + model.depth_time,
+          .turn = ExpSo3(pose.head<3>()).toRotationMatrix(),
+          .shift = pose.tail<3>()};
+}
+
+// The derivative of MovedPoint by the point.
+Eigen::Matrix3d ByStart(const PointVelocity& velocity, double seconds) {
+  const Eigen::Matrix3d turn = Skew(velocity.angular);
+  return Eigen::Matrix3d::Identity() + seconds * turn + 0.5 * seconds * seconds * turn * turn;
+}
+
 }  // namespace
 
 Eigen::Vector3d RawResidual::At(const CameraModel& model, const PointVelocity& velocity,
@@ -23,8 +48,13 @@ Eigen::Vector3d RawResidual::At(const CameraModel& model, const PointVelocity& v
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();
   residual.head<2>() = (model.camera.Distort(model.camera.Project(moved)) - seen.raw) / seen.sigma;
   if (seen.disparity > 0.0) {
+    const Eigen::Vector3d deep = DepthViewOf(model, seen, known_depth_pose).InView(velocity, point);
+    if (deep.z() < kMinDepth) {
+      return Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    }
     const double expected =
-        model.camera.bf / (model.depth_scale * moved.z()) + model.disparity_offset;
+        model.camera.bf / (model.depth_scale * deep.z()) + model.disparity_offset +
+        seen.slope.dot(model.camera.Project(moved) - model.camera.Project(deep));
     residual.z() = (expected - seen.disparity) / disparity_sigma;
   }
   return residual;
@@ -35,17 +65,21 @@ Eigen::Matrix3d RawResidual::ByPoint(const CameraModel& model, const PointVeloci
                                      const Eigen::Vector3d& point) const {
   const double seconds = model.ExposureOf(seen.raw);
   const Eigen::Vector3d moved = MovedPoint(point, velocity, seconds);
-  const Eigen::Matrix3d turn = Skew(velocity.angular);
-  const Eigen::Matrix3d moved_by_point =
-      Eigen::Matrix3d::Identity() + seconds * turn + 0.5 * seconds * seconds * turn * turn;
   const Eigen::Matrix3d projected = ProjectRgbdJacobian(model.camera, moved);
+  const Eigen::Matrix<double, 2, 3> pixel_by_point =
+      projected.topRows<2>() * ByStart(velocity, seconds);
   Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
-  derivative.topRows<2>() = model.camera.DistortionJacobian(model.camera.Project(moved)) *
-                            projected.topRows<2>() / seen.sigma;
+  derivative.topRows<2>() =
+      model.camera.DistortionJacobian(model.camera.Project(moved)) * pixel_by_point / seen.sigma;
   if (seen.disparity > 0.0) {
-    derivative.row(2) = projected.row(2) / (model.depth_scale * disparity_sigma);
+    const DepthView view = DepthViewOf(model, seen, known_depth_pose);
+    const Eigen::Matrix3d deep = ProjectRgbdJacobian(model.camera, view.InView(velocity, point)) *
+                                 view.turn * ByStart(velocity, view.seconds);
+    derivative.row(2) = (deep.row(2) / model.depth_scale +
+                         seen.slope.transpose() * (pixel_by_point - deep.topRows<2>())) /
+                        disparity_sigma;
   }
-  return derivative * moved_by_point;
+  return derivative;
 }
 
 ByCameraParameters::ByCameraParameters(const CameraModel& model,

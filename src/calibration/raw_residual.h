@@ -16,6 +16,10 @@ struct CalibrationObservation {
   Eigen::Vector2d raw = Eigen::Vector2d::Zero();  // px
   double sigma = 1.0;                             // of raw, px
   double disparity = 0.0;                         // measured, bf / z, px; 0 if unknown
+  // The change of the measured disparity per undistorted pixel to the right and down, px/px: that
+  // of the surface.
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  double depth_delay = 0.0;  // s, as in Frame
 };
 
 // The residual of a point x of the camera frame at the exposure of the middle of the image, in
@@ -23,9 +27,14 @@ struct CalibrationObservation {
 //   (Distort(Project(y)) - raw) / sigma   and   (bf / (s y_z) + o - disparity) / disparity_sigma,
 // where y is x at the exposure of the measured raw pixel (MovedPoint), s is
 // CameraModel::depth_scale and o is CameraModel::disparity_offset. The last one is 0 without a
-// disparity. Infinite for a point that is not in front of the camera.
+// disparity. If depth was taken later or from elsewhere, y in it is the point d at that time and
+// seen from there, and it shows a neighbour of the point at the raw pixel, so that the slope times
+// (Project(y) - Project(d)) is added to its disparity. Infinite for a point that
+// is not in front of the camera.
 struct RawResidual {
   double disparity_sigma = 1.0;  // px
+  // As in CalibrationProblem. The poses are small, so they add up.
+  Eigen::Matrix<double, 6, 1> known_depth_pose = Eigen::Matrix<double, 6, 1>::Zero();
 
   Eigen::Vector3d At(const CameraModel& model, const PointVelocity& velocity,
                      const CalibrationObservation& seen, const Eigen::Vector3d& point) const;

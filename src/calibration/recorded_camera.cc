@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame/depth_sight.h"
 #include "frame/rolling_shutter.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
@@ -129,13 +130,13 @@ std::map<LandmarkId, size_t> KeepTracks(size_t fewest, std::vector<SeenView>& vi
   }
 }
 
-// The raw pixel of a keypoint, before its shutter was corrected.
-Eigen::Vector2d RawPixelOf(const Sensor& sensor, const Frame& frame, size_t keypoint) {
+// The undistorted pixel of a keypoint, before its shutter was corrected.
+Eigen::Vector2d PixelOf(const Sensor& sensor, const Frame& frame, size_t keypoint) {
   Eigen::Vector2d pixel = frame.features.keypoints[keypoint].undistorted.cast<double>();
   if (frame.shutter != nullptr) {
     pixel = BeforeCorrection(sensor, *frame.shutter, pixel, keypoint);
   }
-  return sensor.camera.Distort(pixel);
+  return pixel;
 }
 
 }  // namespace
@@ -148,7 +149,7 @@ CalibrationProblem RecordedProblem(SystemOptions options, const CameraRecording&
   options.objects.enabled = false;
   const Sensor sensor = MakeSensor(options);
   System system(options, PipelineKind::kSequential);
-  const CameraModel model = ModelOf(sensor, options.depth.disparity_offset);
+  const CameraModel model = ModelOf(sensor, options.depth);
   std::vector<SeenView> seen;
   system.SetFrameCallback([&](const FrameReport& report) {
     seen.push_back(SeenViewOf(*report.frame, report.landmarks, sensor, model));
@@ -198,12 +199,14 @@ void ApplyModel(const CameraModel& model, SystemOptions& options) {
   options.readout_time = model.readout_time;
   options.readout_direction = model.readout_direction;
   options.depth.disparity_offset = model.disparity_offset;
+  options.depth.time_offset = model.depth_time;
+  Eigen::Map<Eigen::Matrix<double, 6, 1>>(options.depth.pose.data()) = model.depth_pose;
 }
 
 RecordedCalibration CalibrateFromRecordings(SystemOptions options,
                                             std::span<const CameraRecording> recordings,
                                             const RecordedCalibrationOptions& calibration) {
-  CameraModel model = ModelOf(MakeSensor(options), options.depth.disparity_offset);
+  CameraModel model = ModelOf(MakeSensor(options), options.depth);
   const CameraModel given = model;
   size_t frames = 0;
   for (const CameraRecording& recording : recordings) {
@@ -257,12 +260,14 @@ RecordedCalibration CalibrateFromRecordings(SystemOptions options,
   return calibrated;
 }
 
-CameraModel ModelOf(const Sensor& sensor, double disparity_offset) {
+CameraModel ModelOf(const Sensor& sensor, const DepthOptions& depth) {
   return {.camera = sensor.camera,
           .readout_time = sensor.readout_time,
           .readout_direction = sensor.readout_direction,
-          .disparity_offset = disparity_offset,
-          .is_pair = sensor.IsStereo()};
+          .disparity_offset = depth.disparity_offset,
+          .is_pair = sensor.IsStereo(),
+          .depth_time = depth.time_offset,
+          .depth_pose = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(depth.pose.data())};
 }
 
 SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, const Sensor& sensor,
@@ -274,16 +279,21 @@ SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, c
     if (!landmarks[i].IsValid()) {
       continue;
     }
-    const double depth = static_cast<double>(features.depth[i]);
+    const double depth = frame.shutter != nullptr ? frame.shutter->depths[i] : features.depth[i];
+    const Eigen::Vector2d pixel = PixelOf(sensor, frame, i);
+    const std::optional<Eigen::Vector2d> slope = DisparitySlope(sensor.camera, frame.depth, pixel);
     const auto level = static_cast<size_t>(features.keypoints[i].level);
     seen.landmarks.emplace_back(
         landmarks[i],
-        CalibrationObservation{
-            .view = 0,
-            .raw = RawPixelOf(sensor, frame, i),
-            .sigma =
-                sensor.depth_error.pixel_sigma * static_cast<double>(sensor.levels.scale[level]),
-            .disparity = depth > 0.0 ? sensor.camera.bf / depth + model.disparity_offset : 0.0});
+        CalibrationObservation{.view = 0,
+                               .raw = sensor.camera.Distort(pixel),
+                               .sigma = sensor.depth_error.pixel_sigma *
+                                        static_cast<double>(sensor.levels.scale[level]),
+                               .disparity = depth > 0.0 && (slope || sensor.IsStereo())
+                                                ? sensor.camera.bf / depth + model.disparity_offset
+                                                : 0.0,
+                               .slope = slope.value_or(Eigen::Vector2d::Zero()),
+                               .depth_delay = frame.depth_delay});
   }
   return seen;
 }
@@ -318,6 +328,7 @@ CalibrationProblem MakeProblem(const Map& map, const Sensor& sensor, const Camer
   CalibrationProblem problem;
   problem.has_depth = !sensor.IsMonocular();
   problem.disparity_sigma = sensor.depth_error.disparity_sigma;
+  problem.known_depth_pose = model.depth_pose;
   problem.observations.resize(ids.size());
   std::map<LandmarkId, size_t> point_of;
   for (const LandmarkId id : ids) {

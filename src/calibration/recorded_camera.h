@@ -63,9 +63,8 @@ bool IsEnoughToCalibrate(const CalibrationProblem& problem);
 // Sets the camera of a run.
 void ApplyModel(const CameraModel& model, SystemOptions& options);
 
-// The camera of a run. `disparity_offset` is that of its depth images (DepthOptions), whose depths
-// in the map are without it.
-CameraModel ModelOf(const Sensor& sensor, double disparity_offset);
+// The camera of a run, in whose map depths are corrected as `depth` says.
+CameraModel ModelOf(const Sensor& sensor, const DepthOptions& depth);
 
 // An image of a run, and the landmarks that it shows.
 struct SeenView {

@@ -2,7 +2,9 @@
 #include "hullslam/camera/depth.h"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "hullslam/util/check.h"
 
@@ -39,6 +41,15 @@ void DepthOptions::Bind(OptionTable& options) {
               "largest distance of a close point, in units of the baseline");
   options.Add("depth.disparity_offset", &disparity_offset, Range::Between(-20.0, 20.0),
               "disparity of depth images minus the true one, px");
+  options.Add("depth.time_offset", &time_offset, Range::Between(-0.2, 0.2),
+              "depth images are taken so much later than their stamps say, s");
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    options.Add("depth.turn_" + axis, &pose.at(i), Range::Between(-0.2, 0.2),
+                "rotation from colour to registered depth images, rad");
+    options.Add("depth.shift_" + axis, &pose.at(3 + i), Range::Between(-0.2, 0.2),
+                "translation from colour to registered depth images, m");
+  }
   error.Bind(options);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hullslam/geometry/rigid3.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
@@ -118,6 +119,67 @@ cv::Mat WithoutDisparityOffset(const cv::Mat& depth, double offset, double bf,
     }
   }
   return corrected;
+}
+
+DepthReprojection::DepthReprojection(const PinholeCamera& camera,
+                                     const std::array<double, 6>& depth_from_colour)
+    : size_(camera.width, camera.height) {
+  const Eigen::Map<const Eigen::Vector3d> turn(depth_from_colour.data());
+  const Eigen::Map<const Eigen::Vector3d> shift(depth_from_colour.data() + 3);
+  const Eigen::Matrix3d rotation = ExpSo3(turn).toRotationMatrix();
+  depth_shift_ = static_cast<float>(-(rotation.transpose() * shift).z());
+  pixels_.reserve(static_cast<size_t>(size_.area()));
+  for (int y = 0; y < size_.height; ++y) {
+    for (int x = 0; x < size_.width; ++x) {
+      const Eigen::Vector2d raw(x, y);
+      const Eigen::Vector3d ray = camera.Unproject(camera.Undistort(raw), 1.0);
+      const auto seen_at = [&](double inverse) -> Eigen::Vector2d {
+        return camera.Distort(camera.Project(rotation * ray + inverse * shift));
+      };
+      constexpr double kStep = 0.5;  // 1/m
+      const Eigen::Vector2d at_infinity = seen_at(0.0);
+      pixels_.push_back({(at_infinity - raw).cast<float>(),
+                         ((seen_at(kStep) - at_infinity) / kStep).cast<float>(),
+                         static_cast<float>((rotation.transpose() * ray).z())});
+    }
+  }
+}
+
+template <typename Value>
+void DepthReprojection::Fill(const cv::Mat& depth, float units, cv::Mat& registered) const {
+  for (int y = 0; y < size_.height; ++y) {
+    auto* const row = registered.ptr<Value>(y);
+    for (int x = 0; x < size_.width; ++x) {
+      row[x] = Value(0);
+      const auto here = static_cast<float>(depth.at<Value>(y, x));
+      if (!(here > 0.0F) || !std::isfinite(here)) {
+        continue;
+      }
+      const Pixel& pixel = pixels_[static_cast<size_t>(y * size_.width + x)];
+      const Eigen::Vector2f move = pixel.at_infinity + pixel.by_inverse * (units / here);
+      const int column = x + static_cast<int>(std::lround(move.x()));
+      const int line = y + static_cast<int>(std::lround(move.y()));
+      if (column < 0 || line < 0 || column >= size_.width || line >= size_.height) {
+        continue;
+      }
+      const auto there = static_cast<float>(depth.at<Value>(line, column));
+      if (there > 0.0F && std::isfinite(there)) {
+        const float factor = pixels_[static_cast<size_t>(line * size_.width + column)].depth_factor;
+        row[x] = cv::saturate_cast<Value>(std::max(there * factor + units * depth_shift_, 0.0F));
+      }
+    }
+  }
+}
+
+cv::Mat DepthReprojection::Register(const cv::Mat& depth, double units_per_metre) const {
+  Check(depth.size() == size_, "the depth image has another size than the camera's images");
+  cv::Mat registered(depth.size(), depth.type());
+  if (depth.type() == CV_16UC1) {
+    Fill<uint16_t>(depth, static_cast<float>(units_per_metre), registered);
+  } else {
+    Fill<float>(depth, 1.0F, registered);
+  }
+  return registered;
 }
 
 }  // namespace hullslam

@@ -48,4 +48,35 @@ Sight LookAt(const Sensor& sensor, const DepthGrid& grid, const Eigen::Vector2d&
   return is_past ? Sight::kPast : Sight::kUnclear;
 }
 
+// The disparity of a plane is linear in the image.
+std::optional<Eigen::Vector2d> DisparitySlope(const PinholeCamera& camera, const DepthGrid& grid,
+                                              const Eigen::Vector2d& pixel) {
+  constexpr double kOtherSurface = 0.3;  // px from the plane
+  const Eigen::Vector2d at = (camera.Distort(pixel) - DepthGrid::RawPixel(0, 0)) / DepthGrid::kStep;
+  const int column = static_cast<int>(std::floor(at.x())) - 1;
+  const int row = static_cast<int>(std::floor(at.y())) - 1;
+  if (column < 0 || row < 0 || column + 3 >= grid.columns() || row + 3 >= grid.rows()) {
+    return std::nullopt;
+  }
+  Eigen::Matrix4d disparities;
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      disparities(y, x) = camera.bf / grid.At(column + x, row + y);  // infinite where it is unknown
+    }
+  }
+  const Eigen::Vector4d places(-1.5, -0.5, 0.5, 1.5);
+  const double squares = 4.0 * places.squaredNorm();
+  const Eigen::RowVector4d ones = Eigen::RowVector4d::Ones();
+  const Eigen::Vector2d slope((disparities * places).sum() / squares,
+                              (places.transpose() * disparities).sum() / squares);
+  const Eigen::Matrix4d plane = (slope.y() * places) * ones +
+                                ones.transpose() * (slope.x() * places.transpose()) +
+                                Eigen::Matrix4d::Constant(disparities.mean());
+  // False if one is not known.
+  if (!((disparities - plane).cwiseAbs().maxCoeff() < kOtherSurface)) {
+    return std::nullopt;
+  }
+  return Eigen::Vector2d(camera.DistortionJacobian(pixel).transpose() * slope / DepthGrid::kStep);
+}
+
 }  // namespace hullslam

@@ -115,6 +115,9 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       remove_dynamic_(remove_dynamic),
       unused_(UnusedPixels(sensor.camera, sensor.mask_all)),
       unused_right_(UnusedPixels(sensor.camera, sensor.mask_all_right)) {
+  if (depth_.pose != decltype(depth_.pose){} && sensor.kind == SensorKind::kRgbd) {
+    registration_.emplace(sensor.camera, depth_.pose);
+  }
   if (detection) {
     detector_.emplace(sensor, depth, *detection, dynamic_classes_);
   }
@@ -124,7 +127,8 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool
   CheckGreyImage("image", image.grey, sensor_.camera);
   source_->CheckImages(image);
   check_.CheckDepth(image.depth);
-  const bool is_fitted = image.depth.size() == image.grey.size() && depth_.disparity_offset == 0.0;
+  const bool is_fitted =
+      image.depth.size() == image.grey.size() && depth_.disparity_offset == 0.0 && !registration_;
   if (image.depth.empty() || is_fitted) {
     return BuildFitted(image, runner, awaits_masks);
   }
@@ -132,6 +136,9 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool
   fitted.depth =
       WithoutDisparityOffset(FitDepth(image.depth, image.grey.size()), depth_.disparity_offset,
                              sensor_.camera.bf, depth_.units_per_metre);
+  if (registration_) {
+    fitted.depth = registration_->Register(fitted.depth, depth_.units_per_metre);
+  }
   return BuildFitted(fitted, runner, awaits_masks);
 }
 
@@ -140,6 +147,7 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
   using Clock = std::chrono::steady_clock;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
+  built.frame->depth_delay = image.depth_delay;
   DetectionInput input;
   input.keypoints = AddFeatures(image, runner, built.frame->features);
   if (vocabulary_ != nullptr) {

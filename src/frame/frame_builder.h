@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "camera/fit_depth.h"
 #include "features/extractor.h"
 #include "frame/depth_source.h"
 #include "frame/detection/frame_detector.h"
@@ -68,6 +69,7 @@ class FrameBuilder {
   FeatureExtractor extractor_;
   std::unique_ptr<DepthSource> source_;
   std::optional<FrameDetector> detector_;
+  std::optional<DepthReprojection> registration_;  // if depth images need it
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
   bool remove_dynamic_;

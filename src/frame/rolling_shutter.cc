@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame/depth_sight.h"
 #include "frame/keypoint_grid.h"
 #include "hullslam/util/check.h"
 #include "util/statistics.h"
@@ -40,12 +41,39 @@ class UndoMotion {
         velocity_(velocity) {}
 
   Eigen::Vector2d Move(const Eigen::Vector2d& pixel, double inverse_depth) const {
-    const double time = (camera_.Distort(pixel)[axis_.index] / axis_.size - 0.5) * readout_time_;
+    const double time = TimeOf(pixel);
     const Eigen::Vector3d ray =
         camera_.Unproject(pixel, 1.0) - time * inverse_depth * velocity_.linear;
     const Eigen::Vector3d moved = ExpSo3(-time * velocity_.angular) * ray;
     // A point that the middle row could not see: its depth or the velocity is wrong.
     return moved.z() > kLeastDepth ? camera_.Project(moved) : pixel;
+  }
+
+  // The depth (m) of a point at the exposure of the middle row. It was measured (`depth`) `delay`
+  // after the row of its pixel was exposed, and the disparity of its surface changes by `slope` per
+  // undistorted pixel. The pixel of the depth image then shows a neighbour of the point on the
+  // surface, since the point has moved on.
+  double DepthAt(const Eigen::Vector2d& pixel, double depth, double delay,
+                 const Eigen::Vector2d& slope) const {
+    constexpr int kSteps = 2;  // the second one changes less than 0.1 mm
+    const double row_time = TimeOf(pixel);
+    const double time = row_time + delay;
+    const Eigen::Vector3d ray = camera_.Unproject(pixel, 1.0);
+    double inverse = 1.0 / depth;
+    Eigen::Vector3d point = ray * depth;
+    for (int i = 0; i < kSteps; ++i) {
+      point = ExpSo3(-row_time * velocity_.angular) * (ray / inverse - row_time * velocity_.linear);
+      const Eigen::Vector3d when_measured =
+          ExpSo3(time * velocity_.angular) * point + time * velocity_.linear;
+      if (when_measured.z() < kLeastDepth * depth || point.z() < kLeastDepth * depth) {
+        return depth;
+      }
+      const double expected =
+          1.0 / when_measured.z() + slope.dot(pixel - camera_.Project(when_measured)) / camera_.bf;
+      inverse = std::max(inverse + 1.0 / depth - expected, kLeastDepth / depth);
+    }
+    point = ExpSo3(-row_time * velocity_.angular) * (ray / inverse - row_time * velocity_.linear);
+    return point.z();
   }
 
   // The derivative of Move() at a pixel.
@@ -62,6 +90,10 @@ class UndoMotion {
 
  private:
   static constexpr double kLeastDepth = 0.05;  // of that in the image as read
+
+  double TimeOf(const Eigen::Vector2d& pixel) const {
+    return (camera_.Distort(pixel)[axis_.index] / axis_.size - 0.5) * readout_time_;
+  }
 
   const PinholeCamera& camera_;
   const ReadoutAxis axis_;
@@ -165,15 +197,24 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
   const UndoMotion undo(sensor, velocity);
   auto corrected = std::make_shared<Frame>(frame);
   FrameFeatures& features = corrected->features;
+  const bool has_delay = sensor.kind == SensorKind::kRgbd;
+  const Eigen::Vector2d no_slope = Eigen::Vector2d::Zero();
+  const double delay = has_delay ? frame.depth_delay + sensor.depth_time : 0.0;
   for (size_t i = 0; i < features.size(); ++i) {
     Eigen::Vector2f& pixel = features.keypoints[i].undistorted;
-    const Eigen::Vector2f moved = undo.Move(pixel.cast<double>(), inverse_depths[i]).cast<float>();
-    pixel = moved;
+    const Eigen::Vector2d as_read = pixel.cast<double>();
+    if (float& depth = features.depth[i]; depth > 0.0F) {
+      const Eigen::Vector2d slope =
+          has_delay ? DisparitySlope(camera, frame.depth, as_read).value_or(no_slope) : no_slope;
+      depth = static_cast<float>(undo.DepthAt(as_read, static_cast<double>(depth), delay, slope));
+    }
+    pixel = undo.Move(as_read, inverse_depths[i]).cast<float>();
   }
   features.grid = MakeKeypointGrid(features.keypoints, camera);
   auto motion = std::make_shared<ShutterMotion>();
   motion->velocity = velocity;
   motion->inverse_depths.assign(inverse_depths.begin(), inverse_depths.end());
+  motion->depths = frame.features.depth;
   CorrectDetections(sensor, *motion, corrected->detections);
   if (corrected->detections.empty()) {
     corrected->shutter = std::move(motion);

@@ -31,7 +31,9 @@ Eigen::Vector2d ImageVelocity(const PinholeCamera& camera, const PointVelocity& 
 // Sensor::readout_time, and the camera moves meanwhile. Keypoints and the outlines of detections
 // are moved back by the motion of their points since the exposure of the middle row. All points of
 // a detection have one inverse depth: the median over its keypoints, or over all keypoints if none
-// of its own is known. `inverse_depths`: one per keypoint, 0 where it is unknown.
+// of its own is known. `inverse_depths`: one per keypoint, 0 where it is unknown. Depths are those
+// that would have been measured at that time: also depth images have rows, and may be taken earlier
+// or later than the colour image (Frame::depth_delay, Sensor::depth_time).
 std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor& sensor,
                                                const PointVelocity& velocity,
                                                std::span<const double> inverse_depths);
@@ -40,6 +42,7 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
 struct ShutterMotion {
   PointVelocity velocity;
   std::vector<double> inverse_depths;  // one per keypoint, 0 where it is unknown
+  std::vector<float> depths;           // of the frame as read, one per keypoint
 };
 
 // The undistorted pixel in the image as read of the keypoint `index`, which was corrected to

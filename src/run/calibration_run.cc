@@ -17,7 +17,6 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
-#include "settings/camera_file.h"
 #include "system/make_sensor.h"
 #include "util/text.h"
 
@@ -51,9 +50,11 @@ std::vector<OpenedDataset> OpenAll(const CalibrationRun& run) {
 }
 
 std::string NumberWithUnit(const ParameterEvidence& one, double value) {
-  return one.parameter.unit == "s"    ? fmt::format("{:.2f} ms", 1e3 * value)
-         : one.parameter.unit.empty() ? fmt::format("{:.5f}", value)
-                                      : fmt::format("{:.2f} {}", value, one.parameter.unit);
+  return one.parameter.unit == "s"     ? fmt::format("{:.2f} ms", 1e3 * value)
+         : one.parameter.unit == "m"   ? fmt::format("{:.2f} mm", 1e3 * value)
+         : one.parameter.unit == "rad" ? fmt::format("{:.3f} deg", 180.0 / 3.14159265 * value)
+         : one.parameter.unit.empty()  ? fmt::format("{:.5f}", value)
+                                       : fmt::format("{:.2f} {}", value, one.parameter.unit);
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
     calibration.max_passes *= 2;
     options.camera = GuessCamera(options, recordings.front(), calibration);
     options.readout_time = 0.0;
-    calibration.camera.guess = ModelOf(MakeSensor(options), options.depth.disparity_offset);
+    calibration.camera.guess = ModelOf(MakeSensor(options), options.depth);
   } else {
     calibration.camera.trusted_focal_length = options.camera.fx;
   }
@@ -182,13 +183,26 @@ std::vector<std::string> OriginOf(const CalibratedRun& calibrated) {
   return lines;
 }
 
+std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options) {
+  const DepthOptions& depth = options.depth;
+  std::vector<NamedSetting> settings = {
+      {"Camera.readout_time", fmt::format("{}", options.readout_time)},
+      {"depth.disparity_offset", fmt::format("{}", depth.disparity_offset)},
+      {"depth.time_offset", fmt::format("{}", depth.time_offset)}};
+  for (size_t i = 0; i < depth.pose.size(); ++i) {
+    settings.push_back({fmt::format("depth.{}_{}", i < 3 ? "turn" : "shift", "xyz"[i % 3]),
+                        fmt::format("{}", depth.pose.at(i))});
+  }
+  return settings;
+}
+
 std::vector<std::string> OverridesOf(const SystemOptions& options) {
   std::vector<std::string> overrides;
-  for (const auto& [key, value] : CameraSettings(options.camera)) {
-    overrides.push_back(key + "=" + value);
+  for (const auto& settings : {CameraSettings(options.camera), ImageTimeSettings(options)}) {
+    for (const auto& [key, value] : settings) {
+      overrides.push_back(key + "=" + value);
+    }
   }
-  overrides.push_back(fmt::format("Camera.readout_time={}", options.readout_time));
-  overrides.push_back(fmt::format("depth.disparity_offset={}", options.depth.disparity_offset));
   return overrides;
 }
 

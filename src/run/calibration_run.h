@@ -10,6 +10,7 @@
 #include "calibration/determined.h"
 #include "calibration/recorded_camera.h"
 #include "run/dataset_arguments.h"
+#include "settings/camera_file.h"
 
 namespace hullslam {
 
@@ -46,6 +47,9 @@ void PrintCalibration(const CalibratedRun& calibrated);
 
 // The lines that a camera file has as comments: where its numbers come from.
 std::vector<std::string> OriginOf(const CalibratedRun& calibrated);
+
+// The settings of what is not in the camera itself: the times of rows, and depth images.
+std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options);
 
 // key=value for --set, with all numbers of the camera.
 std::vector<std::string> OverridesOf(const SystemOptions& options);

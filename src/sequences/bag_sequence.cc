@@ -186,6 +186,10 @@ class BagLoader {
     sequence.frames.push_back({colour_.images[colour].timestamp, NameOf(source, colour_, colour),
                                depth ? NameOf(source, depth_, *depth) : fs::path(),
                                frames_.size()});
+    if (depth) {
+      sequence.frames.back().depth_delay =
+          depth_.images[*depth].timestamp - colour_.images[colour].timestamp;
+    }
     frames_.push_back({colour, depth.value_or(0)});
   }
 
@@ -196,6 +200,7 @@ class BagLoader {
     const auto& [colour, depth] = frames_.at(frame.number);
     const std::string name = frame.image.string();
     ImageInput image{frame.timestamp, Read(colour_, colour, Decoding::kGrey, name), cv::Mat()};
+    image.depth_delay = frame.depth_delay;
     if (!frame.depth.empty()) {
       image.depth = Read(depth_, depth, Decoding::kDepth, frame.depth.string());
       if (!HaveSameShape(image.depth.size(), {camera.width, camera.height})) {

@@ -42,6 +42,7 @@ ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
                                  image.grey.rows));
   }
   CheckImageSize(frame.image.string(), image.grey, camera);
+  image.depth_delay = frame.depth_delay;
   return image;
 }
 

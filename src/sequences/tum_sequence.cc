@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -110,6 +111,12 @@ ImageList FindColourImages(const fs::path& folder, const TumSequenceOptions& opt
   return FindImages(folder, "rgb", true, options, warnings).value();
 }
 
+// Images that an association file pairs with others of quite another time say nothing about it.
+double DelayOf(double image_stamp, double depth_stamp) {
+  const double delay = depth_stamp - image_stamp;
+  return std::abs(delay) <= kMaxDifference ? delay : 0.0;
+}
+
 ImageSequence PairImages(const fs::path& folder, const TumSequenceOptions& options) {
   ImageSequence sequence;
   ImageList colour = FindColourImages(folder, options, sequence.warnings);
@@ -145,6 +152,7 @@ ImageSequence PairImages(const fs::path& folder, const TumSequenceOptions& optio
   sequence.unpaired = images.size() - pairs.size();
   for (const auto& [i, j] : pairs) {
     images[i].depth = std::move(depth[j].image);
+    images[i].depth_delay = by_number ? 0.0 : DelayOf(images[i].timestamp, depth[j].timestamp);
     sequence.frames.push_back(std::move(images[i]));
   }
   return sequence;
@@ -163,11 +171,13 @@ ImageSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
   ListedFrames list;
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 4, "timestamp rgb timestamp depth");
-    row.Stamp(2, "timestamp of depth");
-    AddFrame(
-        row,
-        {row.Stamp(0, "timestamp of rgb"), ImageFile(row, 1, folder), ImageFile(row, 3, folder)},
-        list);
+    const double stamp = row.Stamp(0, "timestamp of rgb");
+    AddFrame(row,
+             {.timestamp = stamp,
+              .image = ImageFile(row, 1, folder),
+              .depth = ImageFile(row, 3, folder),
+              .depth_delay = DelayOf(stamp, row.Stamp(2, "timestamp of depth"))},
+             list);
   });
   sequence.frames = TakeFrames(path, std::move(list), sequence.warnings);
   return sequence;

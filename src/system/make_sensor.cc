@@ -14,6 +14,9 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.depth_error = options.depth.error;
   sensor.frames_per_second = options.frames_per_second;
   sensor.readout_time = options.tracking.correct_shutter ? options.readout_time : 0.0;
+  sensor.depth_time = options.tracking.correct_shutter && options.sensor == SensorKind::kRgbd
+                          ? options.depth.time_offset
+                          : 0.0;
   sensor.readout_direction = options.readout_direction;
   sensor.mask_all = options.mask_all;
   sensor.mask_all_right = options.mask_all_right;

@@ -176,7 +176,7 @@ std::optional<LocalTracking> TrackCorrected(const Frame& corrected, const LocalT
 std::shared_ptr<const Frame> PredictGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last) {
-  if (sensor.readout_time == 0.0 || !IsKnown(last, frame->timestamp)) {
+  if (!sensor.HasSeveralTimes() || !IsKnown(last, frame->timestamp)) {
     return frame;
   }
   const SeenDepths seen =
@@ -190,7 +190,7 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
                                                   const LastFrame& last,
                                                   const PoseEstimate& estimate) {
   const std::optional<CameraMotion> motion = MotionSince(last, *frame, estimate.cam_from_world);
-  if (sensor.readout_time == 0.0 || !motion) {
+  if (!sensor.HasSeveralTimes() || !motion) {
     return frame;
   }
   const SeenDepths seen =

@@ -53,7 +53,7 @@ class SeenDepths {
 };
 
 // These functions return the frame as a global shutter would have taken it (WithGlobalShutter), or
-// the frame itself if the shutter is global (Sensor::readout_time is 0) or the velocity of the
+// the frame itself if it is of one time (Sensor::HasSeveralTimes) or the velocity of the
 // camera is not known. Time stamps may be wrong and images may be missing, so a velocity only
 // counts if a camera could move like this (its bounds are in the .cc file). `last` is up to date
 // with the map (FollowMap).

@@ -25,7 +25,7 @@ CameraModel Wrong(CameraModel model) {
 // The principal point and the tangential distortion replace one another.
 TEST(CalibrateCamera, TakesTheAxisOfTheLensAsAWholeOrNotAtAll) {
   MadeRecordingOptions options = ShortRecording(kHandHeld, true, 0);
-  options.points = 100;
+  options.points = 150;
   options.truth.camera.p1 = 0.003;
   const CameraCalibrationResult result =
       CalibrateCamera(MadeRecording(options).problem(), Wrong(options.truth), {});
@@ -109,6 +109,29 @@ TEST(CalibrateCamera, KeepsWhatIsNotDetermined) {
   EXPECT_EQ(result.model.camera.fx, 525.0);
   EXPECT_TRUE(result.IsCalibrated("readout_time"));
   EXPECT_NEAR(result.model.readout_time, 0.02, 1e-3);
+}
+
+// A structured-light camera has two cameras, of which each has its own clock and place.
+TEST(CalibrateCamera, FindsWhenAndFromWhereDepthIsMeasured) {
+  MadeRecordingOptions options = ShortRecording(kHandHeld, true, 4);
+  options.views = 60;
+  options.points = 500;
+  options.truth.depth_time = -0.016;
+  options.truth.depth_pose << 0.004, 0.012, -0.006, -0.011, 0.008, 0.0;
+  CameraModel given = options.truth;
+  given.depth_time = 0.0;
+  given.depth_pose.setZero();
+  const CameraCalibrationResult result =
+      CalibrateCamera(MadeRecording(options).problem(), given, {});
+  for (const ParameterEvidence& one : result.evidence.parameters) {
+    const double error = one.parameter.ValueIn(result.model) - one.parameter.ValueIn(options.truth);
+    EXPECT_LT(std::abs(error), 2.5 * one.sigma) << one.parameter.name;
+    if (one.parameter.kind == CameraParameter::Kind::kDepthTime ||
+        one.parameter.kind == CameraParameter::Kind::kDepthPose) {
+      EXPECT_TRUE(result.IsCalibrated(one.parameter.name)) << one.parameter.name;
+    }
+  }
+  EXPECT_NEAR(result.model.depth_time, -0.016, 1e-3);
 }
 
 TEST(CalibrateCamera, TwoRecordingsOfOneCameraKnowMoreThanOne) {

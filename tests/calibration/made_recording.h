@@ -75,6 +75,8 @@ inline std::vector<CameraModel> MadeCameraModels() {
     model.camera.bf = 40.0;
     model.readout_time = 0.02;
     model.disparity_offset = 0.3;
+    model.depth_time = -0.012;
+    model.depth_pose << 0.01, -0.008, 0.004, -0.01, 0.006, 0.003;
     model.depth_scale = 1.01;
   }
   return models;
@@ -126,6 +128,18 @@ class MadeRecording {
                         2.0 * kStep);
   }
 
+  // Of the surface, at the pixel of its point when the depth image is taken, and from there.
+  double DisparityAt(const CalibrationObservation& seen, const Eigen::Vector3d& in_camera,
+                     const Eigen::Vector3d& point) const {
+    const CameraModel& truth = options_.truth;
+    const double time = problem_.views[seen.view].timestamp + truth.ExposureOf(seen.raw) +
+                        seen.depth_delay + truth.depth_time;
+    const Rigid3 depth_from_colour(ExpSo3(truth.depth_pose.head<3>()), truth.depth_pose.tail<3>());
+    const Eigen::Vector3d deep = depth_from_colour * (CamFromWorld(time) * point);
+    return truth.camera.bf / deep.z() + truth.disparity_offset +
+           seen.slope.dot(truth.camera.Project(in_camera) - truth.camera.Project(deep));
+  }
+
   void AddPoint(const Eigen::Vector3d& point) {
     std::vector<CalibrationObservation> seen;
     const CameraModel& truth = options_.truth;
@@ -147,8 +161,10 @@ class MadeRecording {
       one.raw.x() += options_.pixel_noise * noise_(random_);
       one.raw.y() += options_.pixel_noise * noise_(random_);
       if (options_.has_depth) {
-        one.disparity = truth.camera.bf / in_camera.z() + truth.disparity_offset +
-                        options_.disparity_noise * noise_(random_);
+        one.depth_delay = Uniform(-0.01, 0.01);
+        one.slope = {Uniform(-0.05, 0.05), Uniform(-0.05, 0.05)};
+        one.disparity =
+            DisparityAt(one, in_camera, point) + options_.disparity_noise * noise_(random_);
       }
       seen.push_back(one);
     }

@@ -35,6 +35,29 @@ TEST(RawResidual, HasTheValueThatIsComputedByHand) {
   EXPECT_TRUE(std::isinf(residual.At(model, kStill, seen, {0.4, 0.2, -2.0}).x()));
 }
 
+// The point is at (0.4, 0.2, 2) with the image, and at (0.5, 0.2, 2.5) 0.1 s later, when its depth
+// is measured from 0.5 m farther back; its surface has a disparity there that changes by 0.02 px
+// per px.
+TEST(RawResidual, DepthIsThatOfItsOwnTimeAndPlace) {
+  CameraModel model;
+  model.camera.fx = model.camera.fy = 500.0;
+  model.camera.bf = 40.0;
+  model.depth_time = 0.06;
+  model.depth_pose << 0.0, 0.0, 0.0, 0.0, 0.0, 0.7;
+  RawResidual residual{.disparity_sigma = 0.5};
+  residual.known_depth_pose << 0.0, 0.0, 0.0, 0.0, 0.0, 0.2;
+  const CalibrationObservation seen{.view = 0,
+                                    .raw = {100.0, 50.0},
+                                    .disparity = 12.0,
+                                    .slope = {0.02, 0.0},
+                                    .depth_delay = 0.04};
+  const PointVelocity velocity{.linear = {1.0, 0.0, 5.0}};
+  // 40 / 3 + 0.02 (100 - 500 * 0.5 / 3)
+  const double expected = 40.0 / 3.0 + 0.02 * (100.0 - 250.0 / 3.0);
+  EXPECT_NEAR(residual.At(model, velocity, seen, {0.4, 0.2, 2.0}).z(), (expected - 12.0) / 0.5,
+              1e-9);
+}
+
 TEST(RawResidual, TheDerivativeByThePointIsThatOfTheNumbers) {
   RandomGeometry random(1);
   const RawResidual residual{.disparity_sigma = 0.7};
@@ -45,7 +68,9 @@ TEST(RawResidual, TheDerivativeByThePointIsThatOfTheNumbers) {
       const CalibrationObservation seen{.view = 0,
                                         .raw = model.camera.Distort(model.camera.Project(point)),
                                         .sigma = 0.6,
-                                        .disparity = 25.0};
+                                        .disparity = 25.0,
+                                        .slope = {0.1, -0.06},
+                                        .depth_delay = 0.008};
       constexpr double kStep = 1e-6;
       Eigen::Matrix3d expected;
       for (int k = 0; k < 3; ++k) {
@@ -72,7 +97,8 @@ TEST(ByCameraParameters, PredictsTheResidualsOfACameraNearBy) {
     const CalibrationObservation seen{.view = 0,
                                       .raw = model.camera.Distort(model.camera.Project(point)),
                                       .sigma = 1.0,
-                                      .disparity = 25.0};
+                                      .disparity = 25.0,
+                                      .slope = {0.1, -0.06}};
     const auto derivative = by_camera.Of(residual, velocity, seen, point);
     const Eigen::Vector3d here = residual.At(model, velocity, seen, point);
     for (size_t i = 0; i < parameters.size(); ++i) {

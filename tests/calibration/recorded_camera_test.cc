@@ -29,7 +29,7 @@ HULLSLAM_WITH_ALL_CAMERAS(MapProblem);
 TEST_P(MapProblem, TheResidualsOfATrueMapAreSmall) {
   const SyntheticWorld world({.pixel_noise = 0.3}, GetParam().sensor);
   const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20, 25, 30});
-  const CameraModel model = ModelOf(world.sensor(), 0.0);
+  const CameraModel model = ModelOf(world.sensor(), {});
   const CalibrationProblem problem =
       MakeProblem(made.map, world.sensor(), model, PathOf(world, 40));
   ASSERT_EQ(problem.views.size(), 6U);
@@ -43,7 +43,7 @@ TEST_P(MapProblem, TheResidualsOfATrueMapAreSmall) {
 TEST(MakeProblem, HasTheFramesBetweenKeyframes) {
   const SyntheticWorld world({}, SyntheticSensor());
   const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
-  const CameraModel model = ModelOf(world.sensor(), 0.0);
+  const CameraModel model = ModelOf(world.sensor(), {});
   const Trajectory path = PathOf(world, 30);
   const Keyframe& keyframe = made.map.keyframes().At(KeyframeId(0));
   SeenView between = SeenViewOf(*keyframe.frame, keyframe.landmarks, world.sensor(), model);
@@ -71,8 +71,8 @@ TEST(MakeProblem, DisparitiesAreThoseThatWereMeasured) {
   const SyntheticWorld world({}, SyntheticSensor());
   const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
   const auto problem_with = [&](double offset) {
-    return MakeProblem(made.map, world.sensor(), ModelOf(world.sensor(), offset),
-                       PathOf(world, 30));
+    return MakeProblem(made.map, world.sensor(),
+                       ModelOf(world.sensor(), {.disparity_offset = offset}), PathOf(world, 30));
   };
   const CalibrationProblem without = problem_with(0.0);
   const CalibrationProblem with = problem_with(0.75);
@@ -93,9 +93,9 @@ TEST(MakeProblem, ImagesFarApartInTimeHaveNoVelocity) {
   const SyntheticWorld world({}, SyntheticSensor());
   const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
   const CalibrationProblem problem =
-      MakeProblem(made.map, world.sensor(), ModelOf(world.sensor(), 0.0), {});
+      MakeProblem(made.map, world.sensor(), ModelOf(world.sensor(), {}), {});
   ASSERT_EQ(problem.views.size(), 4U);
-  EXPECT_EQ(MedianSpeed(problem, ModelOf(world.sensor(), 0.0)), 0.0);
+  EXPECT_EQ(MedianSpeed(problem, ModelOf(world.sensor(), {})), 0.0);
 }
 
 // The map has keypoints as a global shutter would have seen them; the camera saw others.
@@ -111,7 +111,7 @@ TEST(MakeProblem, RawPixelsAreThoseBeforeTheCorrectionOfTheShutter) {
         frame = *WithGlobalShutter(frame, sensor, velocity, inverse_depths);
       });
   const auto problem_of = [&](const SyntheticMap& made) {
-    return MakeProblem(made.map, sensor, ModelOf(sensor, 0.0), PathOf(world, 30));
+    return MakeProblem(made.map, sensor, ModelOf(sensor, {}), PathOf(world, 30));
   };
   const CalibrationProblem expected = problem_of(as_read);
   const CalibrationProblem found = problem_of(corrected);
@@ -119,6 +119,7 @@ TEST(MakeProblem, RawPixelsAreThoseBeforeTheCorrectionOfTheShutter) {
   for (size_t i = 0; i < expected.points.size(); ++i) {
     for (size_t k = 0; k < expected.observations[i].size(); ++k) {
       EXPECT_LT((found.observations[i][k].raw - expected.observations[i][k].raw).norm(), 1e-2);
+      EXPECT_EQ(found.observations[i][k].disparity, expected.observations[i][k].disparity);
     }
   }
 }

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <type_traits>
+
+#include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
 namespace {
@@ -112,6 +115,65 @@ TEST(WithoutDisparityOffset, GivesTheDepthThatACameraWithoutOffsetMeasures) {
     const cv::Mat corrected = WithoutDisparityOffset(measured, kOffset, kBf, 1000.0);
     EXPECT_LT(cv::norm(corrected, truth, cv::NORM_INF), type == CV_16UC1 ? 2.0 : 1e-5);
   }
+}
+
+// The plane z = 2 + 0.5 x in the frame of the colour camera, seen by a depth camera beside it.
+TEST(DepthReprojection, GivesTheDepthsThatTheColourCameraSees) {
+  PinholeCamera camera;
+  camera.fx = camera.fy = 80.0;
+  camera.cx = 64.0;
+  camera.cy = 48.0;
+  camera.k1 = 0.1;
+  camera.width = 128;
+  camera.height = 96;
+  const std::array<double, 6> pose = {0.01, -0.02, 0.015, 0.03, -0.02, 0.04};
+  const Rigid3 depth_from_colour(ExpSo3(Eigen::Map<const Eigen::Vector3d>(pose.data())),
+                                 Eigen::Map<const Eigen::Vector3d>(pose.data() + 3));
+  const auto image_from = [&](const Rigid3& camera_from_colour, int type) {
+    const Eigen::Vector3d normal = camera_from_colour.rotation * Eigen::Vector3d(-0.5, 0.0, 1.0);
+    cv::Mat image(camera.height, camera.width, type);
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        const Eigen::Vector3d ray = camera.Unproject(camera.Undistort(Eigen::Vector2d(x, y)), 1.0);
+        const double z = (2.0 + normal.dot(camera_from_colour.translation)) / normal.dot(ray);
+        type == CV_32FC1 ? void(image.at<float>(y, x) = static_cast<float>(z))
+                         : void(image.at<uint16_t>(y, x) = cv::saturate_cast<uint16_t>(1e3 * z));
+      }
+    }
+    return image;
+  };
+  const cv::Rect inside(8, 8, 112, 80);
+  for (const int type : {CV_16UC1, CV_32FC1}) {
+    const cv::Mat truth = image_from(Rigid3(), type)(inside);
+    const cv::Mat seen = image_from(depth_from_colour, type);
+    const cv::Mat registered = DepthReprojection(camera, pose).Register(seen, 1000.0);
+    const double unit = type == CV_16UC1 ? 1000.0 : 1.0;
+    // Half a pixel of the depth image is 1.3 cm here.
+    EXPECT_GT(cv::norm(seen(inside), truth, cv::NORM_L1) / inside.area(), 0.05 * unit);
+    EXPECT_LT(cv::norm(registered(inside), truth, cv::NORM_L1) / inside.area(), 0.008 * unit);
+    EXPECT_LT(cv::norm(registered(inside), truth, cv::NORM_INF), 0.03 * unit);
+  }
+}
+
+TEST(DepthReprojection, UnknownDepthsStayUnknown) {
+  PinholeCamera camera;
+  camera.fx = camera.fy = 20.0;
+  camera.cx = 8.0;
+  camera.cy = 6.0;
+  camera.width = 16;
+  camera.height = 12;
+  cv::Mat depth(12, 16, CV_32FC1, cv::Scalar(2.0));
+  depth.at<float>(3, 3) = std::numeric_limits<float>::quiet_NaN();
+  depth.at<float>(5, 5) = std::numeric_limits<float>::infinity();
+  depth.at<float>(7, 7) = -1.0F;
+  depth.at<float>(9, 9) = 0.0F;
+  const cv::Mat registered = DepthReprojection(camera, {}).Register(depth, 1.0);
+  EXPECT_EQ(cv::countNonZero(registered == 2.0F), 12 * 16 - 4);
+  EXPECT_EQ(cv::countNonZero(registered == 0.0F), 4);
+  // 0.2 m to the side are 2 px at 2 m, where the depth camera sees nothing of the last columns.
+  const cv::Mat moved =
+      DepthReprojection(camera, {0.0, 0.0, 0.0, 0.2, 0.0, 0.0}).Register(depth, 1.0);
+  EXPECT_EQ(cv::countNonZero(moved.colRange(14, 16)), 0);
 }
 
 TEST(WithoutDisparityOffset, UnknownAndImpossibleDepthsAreUnknown) {

@@ -227,8 +227,54 @@ TEST(WithGlobalShutter, FindsKeypointsWhereTheyAreNow) {
   EXPECT_EQ(found, std::vector<uint32_t>{0});
 }
 
-// The disparity belongs to the depth, which does not change.
-TEST(WithGlobalShutter, KeepsDisparities) {
+// A slanted wall, z = 2 + 0.5 x + 0.3 y at the exposure of the middle row. Its depth image is taken
+// 20 ms later, whose stamp is right within 4 ms.
+TEST(WithGlobalShutter, DepthsAreThoseOfTheMiddleRow) {
+  Sensor sensor = RollingSensor();
+  sensor.depth_time = -0.004;
+  constexpr double kDelay = 0.024;
+  const Eigen::Vector3d normal(-0.5, -0.3, 1.0);
+  const auto depth_at = [&](const Eigen::Vector2d& pixel, double row) {
+    const Rigid3 motion =
+        MotionUntil((row / sensor.camera.height - 0.5) * kReadout + kDelay + sensor.depth_time);
+    const Eigen::Vector3d turned = motion.rotation * normal;  // turned^T x = 2 + turned^T t
+    return (2.0 + turned.dot(motion.translation)) / turned.dot(sensor.camera.Unproject(pixel, 1.0));
+  };
+  std::vector<Eigen::Vector2d> seen;
+  std::vector<double> inverse_depths, expected;
+  for (const double x : {-0.8, 0.1, 0.8}) {
+    for (const double y : {-0.6, 0.0, 0.6}) {
+      const Eigen::Vector3d point(x, y, 2.0 + 0.5 * x + 0.3 * y);
+      seen.push_back(SeenWhileMoving(sensor, point));
+      inverse_depths.push_back(1.0 / point.z());
+      expected.push_back(point.z());
+    }
+  }
+  Frame frame = FrameOf(seen);
+  frame.depth_delay = kDelay;
+  cv::Mat depth(sensor.camera.height, sensor.camera.width, CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      depth.at<float>(y, x) =
+          static_cast<float>(depth_at(sensor.camera.Undistort(Eigen::Vector2d(x, y)), y));
+    }
+  }
+  frame.depth = DepthGrid(depth, 1.0);
+  double before = 0.0;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    const double z = depth_at(seen[i], sensor.camera.Distort(seen[i]).y());
+    before = std::max(before, std::abs(z - expected[i]));
+    frame.features.depth[i] = static_cast<float>(z);
+  }
+  EXPECT_GT(before, 0.02);
+  const auto corrected = WithGlobalShutter(frame, sensor, Velocity(), inverse_depths);
+  for (size_t i = 0; i < seen.size(); ++i) {
+    EXPECT_NEAR(corrected->features.depth[i], expected[i], 1e-3) << i;
+    EXPECT_EQ(corrected->shutter->depths[i], frame.features.depth[i]);
+  }
+}
+
+TEST(WithGlobalShutter, KeepsDepthsThatDoNotChange) {
   const Sensor sensor = RollingSensor();
   Frame frame = FrameOf({{100.0, 450.0}, {100.0, 450.0}});
   frame.features.depth[0] = 2.0F;

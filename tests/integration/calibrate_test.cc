@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ class Calibrate : public ::testing::Test {
 TEST_F(Calibrate, FindsTheFocalLengthAndKeepsWhatIsNotDetermined) {
   const RenderedDesk desk(60);
   const ProgramResult result =
-      Run(desk.path(), {"--last", "24", "--set", "Camera.fx=551", "--set", "Camera.fy=554.9",
+      Run(desk.path(), {"--last", "39", "--set", "Camera.fx=551", "--set", "Camera.fy=554.9",
                         "--set", "Camera.readout_time=0.001"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("not determined, so it is kept"), std::string::npos);
@@ -39,6 +40,29 @@ TEST_F(Calibrate, FindsTheFocalLengthAndKeepsWhatIsNotDetermined) {
   const SystemOptions found = ReadSettings(output_);
   EXPECT_NEAR(found.camera.fx, 535.4, 4.0) << result.output;
   EXPECT_EQ(found.readout_time, 0.001) << result.output;
+}
+
+// The depth images of a folder in which each has the stamp of the one before it.
+TEST_F(Calibrate, FindsThatDepthIsOfALaterTime) {
+  const RenderedDesk desk(60);
+  const std::filesystem::path path = std::filesystem::path(desk.path()) / "depth.txt";
+  std::ifstream list(path);
+  std::string shifted, stamp_before;
+  for (std::string line; std::getline(list, line);) {
+    const size_t end = line.find(' ');
+    if (line.starts_with('#')) {
+      continue;
+    }
+    if (!stamp_before.empty()) {
+      shifted += stamp_before + line.substr(end) + '\n';
+    }
+    stamp_before = line.substr(0, end);
+  }
+  std::ofstream(path) << shifted;
+  const ProgramResult result = Run(desk.path(), {});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const SystemOptions found = ReadSettings(output_);
+  EXPECT_NEAR(found.depth.time_offset, 1.0 / 30.0, 6e-3) << result.output;
 }
 
 TEST_F(Calibrate, CheckOnlySaysWhatIsKnown) {

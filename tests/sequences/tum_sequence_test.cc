@@ -44,6 +44,7 @@ TEST_F(TumSequenceTest, PairsImagesAndCountsUnpairedOnes) {
   EXPECT_EQ(sequence.frames[1].timestamp, 1.06);
   EXPECT_EQ(sequence.frames[1].image, folder_.path() / "rgb/c.png");
   EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/b.png");
+  EXPECT_NEAR(sequence.frames[1].depth_delay, -0.01, 1e-9);
   EXPECT_FALSE(sequence.groundtruth.has_value());
   folder_.Write("groundtruth.txt", "");
   EXPECT_EQ(Open().groundtruth, folder_.path() / "groundtruth.txt");
@@ -138,9 +139,11 @@ TEST_F(TumSequenceTest, SelectsFrames) {
 
 TEST_F(TumSequenceTest, AnAssociationFileReplacesPairingByTime) {
   const auto path = folder_.Write(
-      "assoc.txt", "# head\n1.0 rgb/a.png 7.5 depth/d.png\n1.5 rgb/b.png 1.5 depth/b.png\n");
+      "assoc.txt", "# head\n1.0 rgb/a.png 7.5 depth/d.png\n1.5 rgb/b.png 1.51 depth/b.png\n");
   const ImageSequence sequence = Open({.associations = path, .selection = {}});
   ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.frames[0].depth_delay, 0.0) << "stamps that far apart are of something else";
+  EXPECT_NEAR(sequence.frames[1].depth_delay, 0.01, 1e-9);
   EXPECT_EQ(sequence.frames[0].depth, folder_.path() / "depth/d.png");
   EXPECT_EQ(sequence.unpaired, 0U);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 
 #include "hullslam/util/option_table.h"
@@ -50,9 +51,14 @@ struct DepthOptions {
   double close_baselines = 40.0;    // depths up to this many baselines count as close
   // The disparity bf / z of depth images minus the true one, px, as `hullslam calibrate` finds it.
   double disparity_offset = 0.0;
-  DepthErrorOptions error;
+  // When and from where depth images are taken, beside what their time stamps and their
+  // registration to the colour images say: so many seconds later, and with the pose
+  // depth_from_colour, a rotation vector (rad) and a translation (m).
+  double time_offset = 0.0;
+  std::array<double, 6> pose = {};
+  DepthErrorOptions error = {};
 
-  // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`, and those of the error.
+  // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`, and those of the section `depth`.
   void Bind(OptionTable& options);
 };
 

@@ -22,7 +22,8 @@ struct Frame {
   FrameFeatures features;
   std::vector<WordId> words;  // one per keypoint; empty without a vocabulary
   std::vector<Detection> detections;
-  DepthGrid depth;  // empty without depth
+  DepthGrid depth;           // empty without depth
+  double depth_delay = 0.0;  // s, as in ImageInput
   // How the keypoints were corrected for a rolling shutter (frame/rolling_shutter.h), for
   // detections that come later and for calibration. Null if they were not, and once there are
   // detections.

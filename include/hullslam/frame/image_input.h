@@ -24,6 +24,7 @@ struct ImageInput {
   cv::Mat right = {};
   // Masks of the objects in the right image; may be empty, also beside other masks.
   std::vector<InstanceMask> right_masks = {};
+  double depth_delay = 0.0;  // s, from the exposure of the image to that of the depth image
 };
 
 }  // namespace hullslam

@@ -38,6 +38,8 @@ struct Sensor {
   // for a global shutter, which exposes the whole image at the same time.
   double readout_time = 0.0;
   ReadoutDirection readout_direction = ReadoutDirection::kRows;
+  // Depth images are taken so much later than their stamps say, s (DepthOptions).
+  double depth_time = 0.0;
   // One mask for all images, such as that of the robot's own arm, and one for all right images of a
   // stereo camera. Each is CV_8UC1 of the size of the raw image, 0 at pixels that are ignored;
   // empty if all pixels are used.
@@ -61,6 +63,8 @@ struct Sensor {
            mask_all.at<unsigned char>(y, x) == 0;
   }
 
+  // Whether an image and its depths are not all of one time.
+  bool HasSeveralTimes() const { return readout_time != 0.0 || depth_time != 0.0; }
   bool IsStereo() const { return kind == SensorKind::kStereo; }
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
   // Baseline of the stereo pair, for RGB-D a virtual one, m; 0 for a monocular camera.

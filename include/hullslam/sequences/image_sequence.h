@@ -26,6 +26,7 @@ struct FramePaths {
   std::filesystem::path depth = {};  // empty: no depth
   size_t number = 0;                 // index among all images of the sequence, from 0
   std::filesystem::path right = {};  // the right image of a stereo camera; empty: none
+  double depth_delay = 0.0;          // s, as in ImageInput
 };
 
 // Selects the frames `first`, `first + stride`, ... up to and including `last`, counted from 0.

@@ -93,12 +93,10 @@ int RunCalibrate(int argc, char** argv) {
   const auto names = CameraFormatNames();
   const auto format = std::ranges::find(names, arguments.format) - names.begin();
   const SystemOptions& options = calibrated->options;
-  const std::vector<NamedSetting> extra = {
-      {"Camera.readout_time", fmt::format("{}", options.readout_time)},
-      {"depth.disparity_offset", fmt::format("{}", options.depth.disparity_offset)}};
-  WriteFileAtomically(arguments.output,
-                      CameraFileText(static_cast<CameraFormat>(format), options.camera,
-                                     options.frames_per_second, extra, OriginOf(*calibrated)));
+  WriteFileAtomically(
+      arguments.output,
+      CameraFileText(static_cast<CameraFormat>(format), options.camera, options.frames_per_second,
+                     ImageTimeSettings(options), OriginOf(*calibrated)));
   Print("{} has the camera\n", arguments.output.string());
   return kDone;
 }
