@@ -16,7 +16,6 @@
 #include "hullslam/settings/loaded_settings.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "run/interrupt.h"
 #include "run/program.h"
 #include "synthetic/sequence_writer.h"
 #include "synthetic/suite_writer.h"

@@ -13,7 +13,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "features/blur.h"
 #include "features/corners.h"
 #include "features/extractor.h"
 #include "features/orb_descriptor.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "frame/depth_sight.h"
+#include "frame/measure_point.h"
 #include "frame/rolling_shutter.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"

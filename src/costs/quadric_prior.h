@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "hullslam/costs/quadric_prior_sigmas.h"
+#include "hullslam/costs/object_residual.h"
 #include "hullslam/geometry/dual_quadric.h"
 
 namespace hullslam {

@@ -8,7 +8,6 @@
 
 #include "frame/detection/visible_part.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 
 namespace hullslam {
 

@@ -106,4 +106,20 @@ constexpr auto kFormats = std::to_array<ExportFormat>({
 
 std::span<const ExportFormat> ExportFormats() { return kFormats; }
 
+std::vector<std::string> ExportFormatNames() {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : kFormats) {
+    names.emplace_back(format.name);
+  }
+  return names;
+}
+
+std::string DescribeExportFormats() {
+  std::string text = "Formats:\n";
+  for (const ExportFormat& format : kFormats) {
+    text += fmt::format("  {:<11} {}\n", format.name, format.meaning);
+  }
+  return text;
+}
+
 }  // namespace hullslam

@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "exports/export_input.h"
 
@@ -28,5 +29,8 @@ struct ExportFormat {
 };
 
 std::span<const ExportFormat> ExportFormats();
+std::vector<std::string> ExportFormatNames();
+// One line per format: its name and meaning.
+std::string DescribeExportFormats();
 
 }  // namespace hullslam

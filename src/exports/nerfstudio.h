@@ -7,7 +7,7 @@
 #include <string>
 
 #include "exports/export_camera.h"
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {

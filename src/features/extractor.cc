@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "features/blur.h"
 #include "features/corners.h"
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "frame/depth_sight.h"
 #include "frame/keypoint_grid.h"
+#include "frame/measure_point.h"
 #include "hullslam/util/check.h"
 #include "util/statistics.h"
 

@@ -21,7 +21,7 @@
 
 #include "hullslam/util/error.h"
 #include "live/http_access.h"
-#include "util/thread_priority.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

@@ -18,7 +18,7 @@
 #include "live/http_server.h"
 #include "live/message_hub.h"
 #include "util/latest_worker.h"
-#include "util/thread_priority.h"
+#include "util/task_runner.h"
 #include "view/report_page.h"
 
 namespace hullslam {

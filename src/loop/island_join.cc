@@ -20,7 +20,6 @@
 #include "places/depth_agreement.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
-#include "places/wide_matches.h"
 
 namespace hullslam {
 namespace {

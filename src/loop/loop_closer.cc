@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "loop/drift_budget.h"
 #include "loop/island_join.h"
 #include "loop/loop_candidates.h"
 #include "loop/loop_correction.h"

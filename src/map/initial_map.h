@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "hullslam/map/initialisation_failure.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/map/tracking_failure.h"
 
 namespace hullslam {
 

@@ -174,11 +174,7 @@ void Map::ReplaceLandmark(LandmarkId landmark, LandmarkId by) {
 }
 
 LandmarkId Map::Resolve(LandmarkId landmark) const {
-  while (landmark.IsValid() && !landmarks_.Contains(landmark)) {
-    const LandmarkId* next = replaced_landmarks_.Find(landmark);
-    landmark = next != nullptr ? *next : LandmarkId();
-  }
-  return landmark;
+  return replaced_landmarks_.Resolve(landmarks_, landmark);
 }
 
 ObjectId Map::AddObject() { return objects_.Insert(ObjectLandmark()); }
@@ -241,13 +237,7 @@ void Map::ReplaceObject(ObjectId object, ObjectId by) {
   replaced_objects_.Add(object, by, revision_);
 }
 
-ObjectId Map::Resolve(ObjectId object) const {
-  while (object.IsValid() && !objects_.Contains(object)) {
-    const ObjectId* next = replaced_objects_.Find(object);
-    object = next != nullptr ? *next : ObjectId();
-  }
-  return object;
-}
+ObjectId Map::Resolve(ObjectId object) const { return replaced_objects_.Resolve(objects_, object); }
 
 void Map::ForgetReplaced(uint32_t revision) {
   replaced_landmarks_.Forget(revision);

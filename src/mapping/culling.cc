@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "frame/depth_sight.h"
+#include "frame/measure_point.h"
+#include "map/compaction.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
 #include "map/keyframe_order.h"
@@ -33,6 +33,21 @@ Sight LookAtLandmark(const Sensor& sensor, const Keyframe& keyframe, const Landm
       ProjectLandmark(sensor, keyframe.cam_from_world, landmark);
   return view && !grid.empty() ? LookAt(sensor, grid, view->pixel, view->point_in_cam)
                                : Sight::kUnclear;
+}
+
+constexpr uint32_t kYoungKeyframes = 20;
+
+// The keyframe, those that are covisible with it, and those that are covisible with one of them.
+IdSet<KeyframeId> NearKeyframes(const Map& map, KeyframeId id) {
+  IdSet<KeyframeId> near;
+  near.Insert(id);
+  for (const Covisible& neighbour : map.keyframes().At(id).covisible) {
+    near.Insert(neighbour.keyframe);
+    for (const Covisible& second : map.keyframes().At(neighbour.keyframe).covisible) {
+      near.Insert(second.keyframe);
+    }
+  }
+  return near;
 }
 
 }  // namespace
@@ -263,6 +278,20 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
     }
   }
   return culled;
+}
+
+void CompactOldKeyframes(Map& map, KeyframeId current, std::vector<KeyframeId>& full) {
+  const IdSet<KeyframeId> near = NearKeyframes(map, current);
+  std::erase_if(full, [&](KeyframeId id) {
+    if (!map.keyframes().Contains(id)) {
+      return true;
+    }
+    if (AgeOf(map, id, current, kYoungKeyframes + 1) <= kYoungKeyframes || near.Contains(id)) {
+      return false;
+    }
+    CompactKeyframe(map, id);
+    return true;
+  });
 }
 
 }  // namespace hullslam

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "frame/reduced_frame.h"
 #include "frame/rolling_shutter.h"
 #include "map/compaction.h"
 #include "map/islands.h"

@@ -14,9 +14,7 @@
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
-#include "mapping/landmark_fusion.h"
 #include "mapping/late_detections.h"
-#include "mapping/old_keyframes.h"
 #include "objects/object_extents.h"
 #include "optim/bundle_adjustment.h"
 

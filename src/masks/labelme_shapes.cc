@@ -15,7 +15,6 @@
 #include "files/plausible.h"
 #include "frame/detection/mask_outline.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "images/image_file.h"
 #include "masks/mask_checks.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "matching/match.h"
 
 namespace hullslam {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "matching/match.h"
 
 namespace hullslam {

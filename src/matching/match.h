@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 
 namespace hullslam {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "geometry/oriented_box.h"
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "objects/constraint/point_statistics.h"
 #include "util/statistics.h"
 

@@ -9,7 +9,6 @@
 
 #include "frame/detection/visible_part.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "objects/constraint/misfit.h"
 
 namespace hullslam {

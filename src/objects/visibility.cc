@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "map/keyframe_order.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"

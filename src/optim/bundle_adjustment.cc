@@ -10,10 +10,9 @@
 #include <memory>
 #include <utility>
 
-#include "costs/defined_cost.h"
 #include "costs/manifolds.h"
 #include "costs/reprojection.h"
-#include "estimators/keypoint_precision.h"
+#include "costs/wrapped_costs.h"
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"
 #include "optim/bundle_points.h"

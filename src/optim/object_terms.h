@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "costs/manifolds.h"
-#include "costs/robust_rows.h"
+#include "costs/wrapped_costs.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_problem.h"
 

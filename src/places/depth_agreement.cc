@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "camera/point_measurement.h"
-#include "frame/depth_sight.h"
+#include "frame/measure_point.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include "camera/wide_lens.h"
 #include "files/json_file.h"
 #include "files/plausible.h"
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/error.h"
 #include "results/json_text.h"
 #include "results/object_file.h"

@@ -191,6 +191,21 @@ std::string DescribeRun(const RunSummary& summary, const ObjectResults& objects,
   return text;
 }
 
+std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
+                          const Map* map) {
+  if (failure) {
+    return fmt::format("{}: {}", ToString(state), ToString(*failure));
+  }
+  std::string text = fmt::format("{}  {}  {}", ToString(state),
+                                 Counted(map != nullptr ? map->keyframes().size() : 0, "keyframe"),
+                                 Counted(map != nullptr ? map->landmarks().size() : 0, "landmark"));
+  if (map != nullptr && map->islands_begun() > 1) {
+    text += fmt::format("  {} parts of the map, {} joined", map->islands_begun(),
+                        map->islands_joined());
+  }
+  return text;
+}
+
 std::string FormatFigure(const std::optional<double>& figure, int decimals) {
   return figure ? fmt::format("{:.{}f}", *figure, decimals) : std::string("-");
 }

@@ -7,6 +7,7 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
 #include "report/object_results.h"
 #include "results/summary.h"
 
@@ -16,6 +17,11 @@ namespace hullslam {
 // that were not joined have been written too.
 std::string DescribeRun(const RunSummary& summary, const ObjectResults& objects, SensorKind sensor,
                         bool keeps_islands);
+
+// The state of tracking and the size of the map (null: none yet) as text for the progress of a run.
+// `failure`: why there is no map yet.
+std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
+                          const Map* map);
 
 // The text "objects of the map: 12 seen again, ...", and one line for each object that was moved,
 // is gone or is new.

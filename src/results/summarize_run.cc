@@ -149,6 +149,38 @@ std::string DescribeFailures(const InitialisationSummary& initialisation) {
                      : "");
 }
 
+// Says why a run of `given` frames that came to its end counts as failed. Empty if it does not.
+std::string DescribeLoss(const System& system, size_t given, const RunSummary& summary) {
+  const RunOptions& options = system.options().run;
+  const std::span<const TrackedFrame> frames = system.frames();
+  const TrajectorySummary& trajectory = summary.trajectory;
+  if (summary.provenance.loaded_map && trajectory.tracked == 0) {
+    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
+                       *summary.provenance.loaded_map, given);
+  }
+  if (summary.initialisation && !summary.initialisation->seconds) {
+    return fmt::format("no map could be made from {}: {}",
+                       Counted(summary.trajectory.frames, "frame"),
+                       DescribeFailures(*summary.initialisation));
+  }
+  const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);
+  const auto all = static_cast<double>(given);
+  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
+    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
+                       options.max_lost_share);
+  }
+  const auto last_tracked = std::find_if(
+      frames.rbegin(), frames.rend(),
+      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
+  if (last_tracked != frames.rend() &&
+      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
+    return fmt::format(
+        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
+        found, options.max_lost_at_end);
+  }
+  return {};
+}
+
 }  // namespace
 
 RunSummary SummarizeRun(const RunResult& result, const System& system,
@@ -241,35 +273,18 @@ ObjectsSummary SummarizeObjects(const ObjectResults& report, const ObjectCounts&
   return summary;
 }
 
-std::string DescribeLoss(const System& system, size_t given, const RunSummary& summary) {
-  const RunOptions& options = system.options().run;
-  const std::span<const TrackedFrame> frames = system.frames();
-  const TrajectorySummary& trajectory = summary.trajectory;
-  if (summary.provenance.loaded_map && trajectory.tracked == 0) {
-    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
-                       *summary.provenance.loaded_map, given);
+std::string DescribeRunEnd(const RunResult& result, const System& system, size_t frames,
+                           const RunSummary& summary) {
+  if (result.input_failure) {
+    return fmt::format("{}; the run ended after {} of {} frames, the results so far were written",
+                       *result.input_failure, result.given, frames);
   }
-  if (summary.initialisation && !summary.initialisation->seconds) {
-    return fmt::format("no map could be made from {}: {}",
-                       Counted(summary.trajectory.frames, "frame"),
-                       DescribeFailures(*summary.initialisation));
-  }
-  const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);
-  const auto all = static_cast<double>(given);
-  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
-    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
-                       options.max_lost_share);
-  }
-  const auto last_tracked = std::find_if(
-      frames.rbegin(), frames.rend(),
-      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
-  if (last_tracked != frames.rend() &&
-      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
-    return fmt::format(
-        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
-        found, options.max_lost_at_end);
-  }
-  return {};
+  return result.was_interrupted
+             ? fmt::format(
+                   "the run was interrupted after {} of {} frames; the results so far were "
+                   "written",
+                   result.given, frames)
+             : DescribeLoss(system, frames, summary);
 }
 
 }  // namespace hullslam

@@ -34,9 +34,10 @@ struct RunResult {
 RunSummary SummarizeRun(const RunResult& result, const System& system,
                         const std::optional<Trajectory>& groundtruth,
                         std::vector<std::string>& warnings);
-// Says why a run of `given` frames that came to its end counts as failed: too many frames were
-// lost (RunOptions). Empty if it does not count as failed.
-std::string DescribeLoss(const System& system, size_t given, const RunSummary& summary);
+// Says why a run of `frames` frames failed: an input ended it, it was interrupted, or too many
+// frames were lost (RunOptions). Empty if it did not fail.
+std::string DescribeRunEnd(const RunResult& result, const System& system, size_t frames,
+                           const RunSummary& summary);
 // The settings of a run, and how it ended.
 ProvenanceSummary SummarizeSettings(const LoadedSettings& settings, const RunResult& result);
 

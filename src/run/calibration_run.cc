@@ -12,8 +12,6 @@
 #include "calibration/guess_camera.h"
 #include "calibration/recorded_camera.h"
 #include "hullslam/util/error.h"
-#include "run/interrupt.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "run/messages.h"
+#include "run/program.h"
 #include "util/text.h"
 
 namespace hullslam {

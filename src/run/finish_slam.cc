@@ -9,8 +9,6 @@
 #include "masks/mask_all.h"
 #include "results/run_report.h"
 #include "results/summary.h"
-#include "run/map_session.h"
-#include "run/messages.h"
 #include "run/more_outputs.h"
 #include "run/program.h"
 #include "run/slam_run.h"
@@ -30,9 +28,9 @@ std::optional<MaskAllSummary> SummarizeMaskAll(const std::filesystem::path& path
                             {.path = path.string(), .ignored = IgnoredShare(mask)});
 }
 
-ProvenanceSummary SummarizeProvenance(const EndedRun& run) {
+ProvenanceSummary SummarizeProvenance(const SlamRun& run, const RunResult& result) {
   const RunArguments& arguments = run.arguments;
-  ProvenanceSummary provenance = SummarizeSettings(run.settings, run.result);
+  ProvenanceSummary provenance = SummarizeSettings(run.settings, result);
   provenance.program = arguments.program;
   provenance.version = HULLSLAM_VERSION;
   provenance.git = GitRevision();
@@ -51,9 +49,9 @@ ProvenanceSummary SummarizeProvenance(const EndedRun& run) {
 }
 
 // The content of summary.json but for masks and objects.
-RunSummary Summarize(const EndedRun& run) {
+RunSummary Summarize(const SlamRun& run, const RunResult& result) {
   std::vector<std::string> warnings;
-  RunSummary summary = SummarizeRun(run.result, run.system, run.groundtruth, warnings);
+  RunSummary summary = SummarizeRun(result, run.system, run.groundtruth, warnings);
   PrintWarnings(warnings);
   summary.trajectory.unpaired = run.sequence.unpaired;
   summary.trajectory.coverage = static_cast<double>(summary.trajectory.tracked) /
@@ -61,12 +59,12 @@ RunSummary Summarize(const EndedRun& run) {
   if (!run.arguments.load_map.empty()) {
     summary.initialisation.reset();
   }
-  summary.provenance = SummarizeProvenance(run);
+  summary.provenance = SummarizeProvenance(run, result);
   return summary;
 }
 
-RunSummary SummarizeAll(const EndedRun& run, const RunContent& content) {
-  RunSummary summary = Summarize(run);
+RunSummary SummarizeAll(const SlamRun& run, const RunResult& result, const RunContent& content) {
+  RunSummary summary = Summarize(run, result);
   if (const NetworkMasks* const network = run.masks.network(); network != nullptr) {
     summary.provenance.network = SummarizeNetwork(*network);
     summary.timing.stages_ms.merge(SummarizeStages(network->work().times));
@@ -78,8 +76,8 @@ RunSummary SummarizeAll(const EndedRun& run, const RunContent& content) {
   return summary;
 }
 
-void WriteFiles(const EndedRun& run, const RunContent& content, RunSummary summary,
-                OutputFolder& output) {
+void WriteFiles(const SlamRun& run, const RunContent& content, RunSummary summary) {
+  OutputFolder& output = run.output;
   WriteRunFiles({.content = content,
                  .sequence = run.sequence,
                  .options = run.settings.options,
@@ -92,31 +90,15 @@ void WriteFiles(const EndedRun& run, const RunContent& content, RunSummary summa
   output.Commit();
 }
 
-std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
-  return fmt::format(
-      "the run was interrupted after {} of {} frames; the results so far were written",
-      result.given, sequence.frames.size());
-}
-
-// Why the run failed; empty if it did not.
-std::string DescribeFailure(const EndedRun& run, const RunSummary& summary) {
-  if (run.result.input_failure) {
-    return fmt::format("{}; the run ended after {} of {} frames, the results so far were written",
-                       *run.result.input_failure, run.result.given, run.sequence.frames.size());
-  }
-  return run.result.was_interrupted ? DescribeInterruption(run.result, run.sequence)
-                                    : DescribeLoss(run.system, run.sequence.frames.size(), summary);
-}
-
 }  // namespace
 
-int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
+int FinishSlam(const SlamRun& run, const RunResult& result) {
   const RunArguments& arguments = run.arguments;
   const SystemOptions& options = run.settings.options;
   const RunContent content =
       CollectContent(run.system, arguments.sequence, run.earlier_sessions, arguments.keep_islands);
-  const RunSummary summary = SummarizeAll(run, content);
-  WriteFiles(run, content, summary, output);
+  const RunSummary summary = SummarizeAll(run, result, content);
+  WriteFiles(run, content, summary);
   const std::string unsaved = SaveMap(arguments, options, *content.map);
   const std::string unsaved_islands = SaveIslands(arguments, options, content.islands);
   const std::string unrecorded =
@@ -124,7 +106,7 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
                             .options = &options,
                             .map = content.map.get(),
                             .sequence = &run.sequence,
-                            .frames = run.result.given,
+                            .frames = result.given,
                             .trajectory = &content.trajectory,
                             .objects = &content.objects});
   if (!arguments.quiet) {
@@ -132,14 +114,15 @@ int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live) {
           DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),
           arguments.output.string());
   }
-  live.End(content.map, SummaryJson(summary));
+  run.live.End(content.map, SummaryJson(summary));
   const std::string unreported =
       arguments.report
-          ? WriteReport(output.path(), *content.map, options, run.sequence, arguments.quiet)
+          ? WriteReport(run.output.path(), *content.map, options, run.sequence, arguments.quiet)
           : "";
   const int code =
-      FailIfAny({DescribeFailure(run, summary), unsaved, unsaved_islands, unrecorded, unreported});
-  return run.result.input_failure ? kBadInput : code;
+      FailIfAny({DescribeRunEnd(result, run.system, run.sequence.frames.size(), summary), unsaved,
+                 unsaved_islands, unrecorded, unreported});
+  return result.input_failure ? kBadInput : code;
 }
 
 }  // namespace hullslam

@@ -6,16 +6,22 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
-#include <cstdio>
 #include <future>
 #include <system_error>
 
-#include "run/messages.h"
-
 namespace hullslam {
+namespace {
+
+// This is a global variable, because a signal handler gets no argument from the program. The
+// handler may only use lock-free variables.
+static_assert(std::atomic<bool>::is_always_lock_free);
+Cancellation interruption;
+
+}  // namespace
 
 void PrepareStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -75,5 +81,23 @@ int FinishStdout(int code) {
              reason != 0 ? ": " + std::generic_category().message(reason) : std::string());
   return code == kDone ? kFailed : code;
 }
+
+void CatchInterrupts() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { interruption.Request(); };
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction former = {};
+    sigaction(signal, nullptr, &former);
+    if (former.sa_handler != SIG_IGN) {
+      sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+const Cancellation& Interruption() { return interruption; }
+
+bool IsInterrupted() { return interruption.IsRequested(); }
 
 }  // namespace hullslam

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "run/messages.h"
+#include "run/program.h"
 
 namespace hullslam {
 namespace {

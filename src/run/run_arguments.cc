@@ -11,7 +11,6 @@
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/mask_arguments.h"
 #include "run/more_outputs.h"
 #include "run/view_arguments.h"
 #include "run/vocabularies.h"

@@ -16,11 +16,9 @@
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
 #include "results/output_folder.h"
+#include "results/run_report.h"
 #include "run/dataset_arguments.h"
-#include "run/interrupt.h"
-#include "run/map_session.h"
-#include "run/mask_arguments.h"
-#include "run/messages.h"
+#include "run/more_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/view_arguments.h"
@@ -38,25 +36,6 @@ PipelineKind ChoosePipeline(const RunArguments& arguments) {
     return PipelineKind::kSequential;
   }
   return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
-}
-
-// The numbers of islands; empty if the map has only one.
-std::string DescribeIslands(const Map& map) {
-  return map.islands_begun() > 1 ? fmt::format("  {} parts of the map, {} joined",
-                                               map.islands_begun(), map.islands_joined())
-                                 : "";
-}
-
-std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
-                          const System& system) {
-  const auto map = system.map();
-  if (failure) {
-    return fmt::format("{}: {}", ToString(state), ToString(*failure));
-  }
-  return fmt::format("{}  {}  {}{}", ToString(state),
-                     Counted(map != nullptr ? map->keyframes().size() : 0, "keyframe"),
-                     Counted(map != nullptr ? map->landmarks().size() : 0, "landmark"),
-                     map != nullptr ? DescribeIslands(*map) : "");
 }
 
 // The bundle adjustment of a large map and the final poses of many frames take long. So their
@@ -135,22 +114,13 @@ void PrintNewWarnings(const System& system, size_t& printed, Progress& progress)
   }
 }
 
-// A run while its frames are tracked.
-struct TrackedRun {
-  const RunArguments& arguments;
-  const ImageSequence& sequence;
-  const PinholeCamera& camera;
-  const SequenceMasks& masks;
-  System& system;
-  LiveOutput& live;
-};
-
 // Tracks the frames up to the end or an interruption. Throws InputError if the input of a frame
 // cannot be used; the frames before it have been tracked. `shown` is the failure of the last frame.
-void TrackFrames(const TrackedRun& run, const std::optional<InitialisationFailure>& shown,
+void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>& shown,
                  Clock::time_point& start, Progress& progress, RunResult& result) {
   FrameSource frames(run.arguments.realtime ? Pace::kRealtime : Pace::kFast, run.sequence,
-                     run.camera, run.masks, run.system, run.live.IsOn(), &Interruption());
+                     run.settings.options.camera, run.masks, run.system, run.live.IsOn(),
+                     &Interruption());
   size_t warnings = 0;
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
@@ -183,7 +153,8 @@ void TrackFrames(const TrackedRun& run, const std::optional<InitialisationFailur
                          .build_ms = loaded->build_ms,
                          .track_ms = Milliseconds(Clock::now() - begin)},
                         run.system);
-    progress.Show(result.given, [&] { return DescribeState(frame.state, shown, run.system); });
+    progress.Show(result.given,
+                  [&] { return DescribeState(frame.state, shown, run.system.map().get()); });
   }
   frames.Finish();
 }
@@ -199,7 +170,7 @@ void WarnOfFailedMasks(const SequenceMasks& masks) {
   }
 }
 
-RunResult TrackAll(const TrackedRun& run) {
+RunResult TrackAll(const SlamRun& run) {
   RunResult result;
   System& system = run.system;
   Progress progress(run.sequence.frames.size(), run.arguments.quiet);
@@ -326,12 +297,16 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   WarnOfInput(arguments, options, sequence, masks);
   PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
-  const RunResult result = TrackAll({.arguments = arguments,
-                                     .sequence = sequence,
-                                     .camera = options.camera,
-                                     .masks = masks,
-                                     .system = system,
-                                     .live = live});
+  const SlamRun run = {.arguments = arguments,
+                       .settings = settings,
+                       .sequence = sequence,
+                       .masks = masks,
+                       .groundtruth = groundtruth,
+                       .system = system,
+                       .live = live,
+                       .output = output,
+                       .earlier_sessions = earlier_sessions};
+  const RunResult result = TrackAll(run);
   options.depth = system.options().depth;
   if (result.input_failure && system.frames().empty()) {
     throw InputError(*result.input_failure);
@@ -340,16 +315,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
     PrintFailure("the run was interrupted before the first frame; nothing was written");
     return kFailed;
   }
-
-  return FinishSlam({.arguments = arguments,
-                     .settings = settings,
-                     .sequence = sequence,
-                     .masks = masks,
-                     .groundtruth = groundtruth,
-                     .system = system,
-                     .result = result,
-                     .earlier_sessions = earlier_sessions},
-                    output, live);
+  return FinishSlam(run, result);
 }
 
 }  // namespace hullslam

@@ -13,7 +13,6 @@
 #include "results/output_folder.h"
 #include "results/summarize_run.h"
 #include "run/dataset_arguments.h"
-#include "run/mask_arguments.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
@@ -26,20 +25,22 @@ namespace hullslam {
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes);
 
-// A run whose frames have all been tracked and whose map is finished.
-struct EndedRun {
+// A run: what it reads, and what it makes.
+struct SlamRun {
   const RunArguments& arguments;
   const LoadedSettings& settings;
   const ImageSequence& sequence;
   const SequenceMasks& masks;
   const std::optional<Trajectory>& groundtruth;
-  const System& system;
-  const RunResult& result;
+  System& system;
+  LiveOutput& live;
+  OutputFolder& output;
   size_t earlier_sessions = 0;  // of the map that the run began with
 };
 
-// Writes the results of a run to its output folder, and its map, recording and report where they
-// are asked for. Prints the results, and why the run or a file failed. Returns the exit code.
-int FinishSlam(const EndedRun& run, OutputFolder& output, LiveOutput& live);
+// Writes the results of a run whose frames have all been tracked and whose map is finished to its
+// output folder, and its map, recording and report where they are asked for. Prints the results,
+// and why the run or a file failed. Returns the exit code.
+int FinishSlam(const SlamRun& run, const RunResult& result);
 
 }  // namespace hullslam

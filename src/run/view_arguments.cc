@@ -12,8 +12,7 @@
 
 #include "hullslam/map_files/map_file.h"
 #include "run/command_line.h"
-#include "run/interrupt.h"
-#include "run/messages.h"
+#include "run/program.h"
 #include "system/make_sensor.h"
 #include "util/text.h"
 

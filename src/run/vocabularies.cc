@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hullslam/util/error.h"
-#include "run/messages.h"
+#include "run/program.h"
 
 namespace hullslam {
 

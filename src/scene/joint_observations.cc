@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "hullslam/geometry/dual_quadric.h"
 
 namespace hullslam {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "objects/constraint/misfit.h"
 
 namespace hullslam {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "util/latest_worker.h"
-#include "util/thread_priority.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

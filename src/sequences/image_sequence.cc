@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,34 @@ void TakeFrames(const ImageSequence& sequence, PoseFile& file) {
 }
 
 }  // namespace
+
+FrameSelection ParseFrameRange(const std::string& option, const std::string& text, size_t frames) {
+  const size_t colon = text.find(':');
+  const std::string expected = fmt::format(
+      "{}: '{}', expected FIRST:LAST with 0 <= FIRST <= LAST "
+      "< {}, the number of frames",
+      option, text, frames);
+  if (colon == std::string::npos) {
+    throw InputError(expected);
+  }
+  const auto parse = [&](const char* begin, const char* end, size_t missing) {
+    size_t number = missing;
+    if (begin != end) {
+      const auto [rest, error] = std::from_chars(begin, end, number);
+      if (error != std::errc() || rest != end) {
+        throw InputError(expected);
+      }
+    }
+    return number;
+  };
+  const char* const begin = text.data();
+  const FrameSelection range{.first = parse(begin, begin + colon, 0),
+                             .last = parse(begin + colon + 1, begin + text.size(), frames - 1)};
+  if (range.first > range.last || range.last >= frames) {
+    throw InputError(expected);
+  }
+  return range;
+}
 
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   ImageInput image{frame.timestamp, ReadGreyImage(frame.image),

@@ -2,7 +2,11 @@
 #include "system/finish_run.h"
 
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "frame/measure_point.h"
+#include "loop/island_join.h"
 #include "map/islands.h"
 #include "objects/object_index.h"
 #include "system/compose_trajectory.h"
@@ -18,6 +22,40 @@ void FinishFrames(const Map& map, const Sensor& sensor, const SystemOptions& opt
   const ObjectIndex object_index(map, sensor.camera);
   RefinePoses(map, {sensor, options.tracking, options.objects, object_index, options.seed},
               remembered, frames, cancellation, on_progress);
+}
+
+bool AddLostKeyframes(Tracker& tracker, Mapper& mapper, const Cancellation* cancellation) {
+  bool has_grown = false;
+  while (!IsRequested(cancellation)) {
+    std::optional<KeyframeRequest> request = tracker.FindLostKeyframe(mapper.Snapshot());
+    if (!request) {
+      break;
+    }
+    has_grown |= mapper.Process(std::move(*request), cancellation);
+  }
+  return has_grown;
+}
+
+bool JoinOnce(Mapper& mapper, const Sensor& sensor, const SystemOptions& options,
+              const Cancellation* cancellation) {
+  Map map = mapper.Snapshot();
+  const IslandId main = MainIsland(map);
+  for (const IslandId island : Islands(map)) {
+    if (island == main) {
+      continue;
+    }
+    for (const KeyframeId keyframe : KeyframesOf(map, island)) {
+      if (IsRequested(cancellation)) {
+        return false;
+      }
+      std::optional<MapCorrection> join = FindJoin(map, keyframe, WithWideErrors(sensor),
+                                                   options.loop, options.objects, options.seed);
+      if (join) {
+        return mapper.Process(std::move(*join), cancellation);
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -68,6 +106,32 @@ std::vector<LeftIsland> FinishRun(Pipeline& pipeline, const Sensor& sensor,
   FinishFrames(*map, sensor, options, remembered, frames, cancellation, on_poses);
   ReplaceEarlyFrames(pipeline.TakeEarlyFrames(cancellation, on_poses), frames);
   return left;
+}
+
+void GrowMap(Tracker& tracker, Mapper& mapper, const Sensor& sensor, const SystemOptions& options,
+             const Cancellation* cancellation) {
+  if (!tracker.HasHadWideSteps()) {
+    return;
+  }
+  mapper.ExpectWideSteps(true);
+  do {
+    AddLostKeyframes(tracker, mapper, cancellation);
+  } while (JoinOnce(mapper, sensor, options, cancellation));
+}
+
+ObjectCounts CountObjects(const DetectionCounts& masks, size_t frames,
+                          const std::map<ObjectRejection, size_t>& rejections) {
+  ObjectCounts counts;
+  counts.detections = masks.detections;
+  counts.frames_with_masks = masks.frames_with_masks;
+  counts.frames_without_masks = frames - masks.frames_with_masks;
+  for (const auto& [reason, count] : masks.rejections) {
+    counts.rejections["mask_" + ToString(reason)] = count;
+  }
+  for (const auto& [reason, count] : rejections) {
+    counts.rejections[ToString(reason)] = count;
+  }
+  return counts;
 }
 
 }  // namespace hullslam

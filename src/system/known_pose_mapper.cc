@@ -14,7 +14,7 @@
 #include "hullslam/util/check.h"
 #include "map/keyframe_graph.h"
 #include "objects/object_mapper.h"
-#include "system/count_objects.h"
+#include "system/finish_run.h"
 #include "system/make_sensor.h"
 #include "system/pose_scale_check.h"
 #include "util/text.h"

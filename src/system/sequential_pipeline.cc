@@ -7,7 +7,6 @@
 #include "loop/loop_correction.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
-#include "system/grow_map.h"
 #include "system/loop_stages.h"
 #include "system/pipeline.h"
 #include "tracking/tracker.h"

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <thread>
-#include <utility>
 
 #include "frame/detection/mask_region.h"
 #include "frame/frame_builder.h"
@@ -17,7 +16,6 @@
 #include "hullslam/util/error.h"
 #include "objects/object_extents.h"
 #include "system/compose_trajectory.h"
-#include "system/count_objects.h"
 #include "system/finish_run.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"

@@ -10,13 +10,11 @@
 #include "hullslam/util/check.h"
 #include "mapping/mapper.h"
 #include "system/finish_run.h"
-#include "system/grow_map.h"
 #include "system/loop_stages.h"
-#include "system/loop_threads.h"
 #include "system/pipeline.h"
 #include "tracking/tracker.h"
 #include "util/between_threads.h"
-#include "util/thread_priority.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

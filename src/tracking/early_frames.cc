@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "places/wide_matches.h"
+#include "places/landmark_search.h"
 #include "tracking/last_frame.h"
 #include "tracking/shutter_correction.h"
 #include "tracking/sources/confirmed_pose.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/frame/instance_mask.h"
 #include "objects/association.h"
 #include "objects/constraint/misfit.h"

@@ -8,8 +8,8 @@
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
-#include "hullslam/map/initialisation_failure.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/map/tracking_failure.h"
 
 namespace hullslam {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frame/measure_point.h"
-#include "optim/corner_sigma.h"
+#include "optim/joint_pose_optimization.h"
 #include "util/statistics.h"
 
 namespace hullslam {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"

@@ -7,8 +7,6 @@
 
 #include "frame/measure_point.h"
 #include "map/islands.h"
-#include "tracking/known_view.h"
-#include "tracking/last_frame.h"
 
 namespace hullslam {
 namespace {
@@ -120,6 +118,16 @@ TrackingFailure WhyLost(const Frame& frame, const TrackingContext& context, cons
 }
 
 }  // namespace
+
+std::vector<Sighting> SightingCounter::Take() {
+  std::vector<Sighting> sightings;
+  for (const auto& [landmark, counts] : counts_.Take()) {
+    sightings.push_back({landmark, counts.visible, counts.found});
+  }
+  std::sort(sightings.begin(), sightings.end(),
+            [](const Sighting& a, const Sighting& b) { return a.landmark < b.landmark; });
+  return sightings;
+}
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
                  uint64_t seed)

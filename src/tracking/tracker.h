@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
@@ -13,17 +14,35 @@
 #include "hullslam/util/stage_timer.h"
 #include "objects/request_memory.h"
 #include "tracking/early_frames.h"
-#include "tracking/join_requests.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/monocular_initialiser.h"
+#include "tracking/repeated_views.h"
 #include "tracking/shutter_correction.h"
-#include "tracking/sighting_counter.h"
 #include "tracking/sources/confirmed_pose.h"
 #include "tracking/sources/pose_source.h"
 #include "tracking/tracking_context.h"
+#include "util/id_set.h"
 
 namespace hullslam {
+
+// Counts, between two messages to the mapper, the frames in which each landmark should have been
+// visible and the frames in which it was found.
+class SightingCounter {
+ public:
+  void CountVisible(LandmarkId landmark) { ++counts_[landmark].visible; }
+  void CountFound(LandmarkId landmark) { ++counts_[landmark].found; }
+
+  // The counts since the last call, by increasing id. Counting starts again from zero.
+  std::vector<Sighting> Take();
+
+ private:
+  struct Counts {
+    int visible = 0;
+    int found = 0;
+  };
+  IdMap<LandmarkId, Counts> counts_;
+};
 
 // Whether the mapper can take a keyframe at the moment.
 struct MapperStatus {

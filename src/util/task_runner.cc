@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "util/task_runner.h"
 
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <thread>
 #include <vector>
@@ -25,6 +29,13 @@ void ParallelRunner::Run(size_t count, const std::function<void(size_t)>& task) 
     tasks.Work();
   }
   tasks.RethrowFailure();
+}
+
+// On Linux each thread has a niceness of its own. If the call fails, the thread keeps its niceness.
+// This only affects speed.
+void RunInBackground(int niceness) {
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));
+  setpriority(PRIO_PROCESS, thread, std::max(niceness, getpriority(PRIO_PROCESS, thread)));
 }
 
 }  // namespace hullslam

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/error.h"
 #include "images/image_codecs.h"
 #include "sequences/image_list.h"

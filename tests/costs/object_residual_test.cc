@@ -36,5 +36,12 @@ TEST(ObjectResidual, OfLinesTakesEveryPrimitive) {
   }
 }
 
+TEST(QuadricPriorSigmas, ArePositiveByDefault) {
+  constexpr QuadricPriorSigmas kSigmas;
+  EXPECT_GT(kSigmas.log_axes, 0.0);
+  EXPECT_GT(kSigmas.center, 0.0);
+  EXPECT_GT(kSigmas.rotation, 0.0);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/check.h"
 #include "support/random_geometry.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "map/made_map.h"
 
@@ -34,6 +35,15 @@ TEST(MapTables, AMapOfTablesHasWhatIsInThem) {
   EXPECT_EQ(map.sessions().front().name, "first");
   EXPECT_EQ(map.correction_count(), 9u);
   EXPECT_EQ(map.revision(), 0u);
+}
+
+TEST(Session, AFrameBelongsToTheLastSessionThatHadBegun) {
+  const std::vector<Session> sessions = {{"a", FrameId(2)}, {"b", FrameId(5)}, {"c", FrameId(9)}};
+  const std::vector<size_t> expected = {0, 0, 1, 1, 1, 2, 2, 2, 2, 3, 3};
+  for (uint32_t frame = 0; frame < expected.size(); ++frame) {
+    EXPECT_EQ(SessionNumber(sessions, FrameId(frame)), expected[frame]) << frame;
+  }
+  EXPECT_EQ(SessionNumber({}, FrameId(7)), 0u);
 }
 
 }  // namespace

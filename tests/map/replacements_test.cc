@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "hullslam/util/id.h"
 
 namespace hullslam {
@@ -19,6 +21,21 @@ TEST(Replacements, FindsTheIdThatReplacedAnother) {
   EXPECT_EQ(replacements.Find(ObjectId(2)), nullptr);
   EXPECT_EQ(replacements.Find(ObjectId()), nullptr);
   EXPECT_EQ(replacements.size(), 2u);
+}
+
+struct IdTable {
+  std::set<ObjectId> ids;
+  bool Contains(ObjectId id) const { return ids.contains(id); }
+};
+
+TEST(Replacements, ResolveLeadsToTheIdThatTheTableHas) {
+  Replacements<ObjectId> replacements;
+  replacements.Add(ObjectId(1), ObjectId(7), 0);
+  replacements.Add(ObjectId(7), ObjectId(8), 1);
+  EXPECT_EQ(replacements.Resolve(IdTable{{ObjectId(1), ObjectId(8)}}, ObjectId(1)), ObjectId(1));
+  EXPECT_EQ(replacements.Resolve(IdTable{{ObjectId(8)}}, ObjectId(1)), ObjectId(8));
+  EXPECT_FALSE(replacements.Resolve(IdTable{{ObjectId(9)}}, ObjectId(1)).IsValid());
+  EXPECT_FALSE(replacements.Resolve(IdTable{{ObjectId(9)}}, ObjectId()).IsValid());
 }
 
 TEST(Replacements, TellsGenerationsOfASlotApart) {

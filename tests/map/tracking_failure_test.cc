@@ -15,5 +15,14 @@ TEST(TrackingFailure, NamesAreDifferent) {
   }
 }
 
+TEST(InitialisationFailure, NamesAreDifferent) {
+  for (const InitialisationFailure a : kInitialisationFailures) {
+    EXPECT_FALSE(ToString(a).empty());
+    for (const InitialisationFailure b : kInitialisationFailures) {
+      EXPECT_EQ(ToString(a) == ToString(b), a == b);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -10,7 +10,7 @@
 
 #include "files/base64.h"
 #include "frame/detection/mask_outline.h"
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "images/image_file.h"
 #include "support/expect_error.h"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 
 namespace hullslam {
 

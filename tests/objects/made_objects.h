@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/map.h"

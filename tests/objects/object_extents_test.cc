@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 

@@ -69,11 +69,11 @@ class CheckLayersTest(unittest.TestCase):
         # The same for public and for private headers, on either side.
         cmake = {"src/map/CMakeLists.txt": "hullslam_module(map LINKS util)\n"}
         self.assert_fault({**cmake, "include/hullslam/map/a.h": source}, "LINKS")
-        self.assert_fault({**cmake, "src/map/a.cc": '#include "geometry/polyline.h"\n'}, "LINKS")
+        self.assert_fault({**cmake, "src/map/a.cc": '#include "geometry/polygon.h"\n'}, "LINKS")
 
     def test_declared_link(self):
         files = {"src/map/a.cc": '#include "hullslam/geometry/rigid3.h"\n'
-                                 '#include "geometry/polyline.h"\n'
+                                 '#include "geometry/polygon.h"\n'
                                  '#include "hullslam/map/b.h"\n#include "map/c.h"\n'}
         for call in ("hullslam_module(map LINKS geometry)",
                      "hullslam_module(map LINKS util\n  geometry PUBLIC Eigen3::Eigen)",
@@ -94,7 +94,7 @@ class CheckLayersTest(unittest.TestCase):
                 self.assert_fault({**files, "src/map/a.cc": '#include "optim/b.h"\n'}, "up")
 
     def test_private_header_in_a_public_one(self):
-        for include in ('"map/graph.h"', '"geometry/polyline.h"', "<geometry/polyline.h>",
+        for include in ('"map/graph.h"', '"geometry/polygon.h"', "<geometry/polygon.h>",
                         '"../../../src/map/graph.h"'):
             with self.subTest(include):
                 text = f"\n#include {include}\n"

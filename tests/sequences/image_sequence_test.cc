@@ -134,5 +134,21 @@ TEST(AddWarp, StepsAreDoneInTheirOrder) {
             1e-7);
 }
 
+TEST(ParseFrameRange, AMissingNumberIsAnEndOfTheSequence) {
+  const auto ends = [](const char* text) {
+    const FrameSelection range = ParseFrameRange("--frames", text, 10);
+    EXPECT_EQ(range.stride, 1U);
+    return std::pair(range.first, range.last);
+  };
+  EXPECT_EQ(ends(":"), std::pair(size_t{0}, size_t{9}));
+  EXPECT_EQ(ends("3:"), std::pair(size_t{3}, size_t{9}));
+  EXPECT_EQ(ends(":4"), std::pair(size_t{0}, size_t{4}));
+  EXPECT_EQ(ends("5:5"), std::pair(size_t{5}, size_t{5}));
+  for (const char* const text : {"", "3", "5:4", "0:10", "-1:3", "1:2:3", "a:b", "1: 2"}) {
+    ExpectInputError([&] { ParseFrameRange("--frames", text, 10); },
+                     {"--frames: '" + std::string(text) + "', expected FIRST:LAST"});
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -20,6 +20,7 @@
 #include "map/invariants.h"
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"
+#include "support/synthetic_world.h"
 #include "support/temporary_folder.h"
 #include "system/prefetcher.h"
 
@@ -877,6 +878,13 @@ TEST(System, TheCallbackGetsAReportOfEachFrame) {
     ASSERT_NE(reports[i].frame, nullptr);
     EXPECT_EQ(reports[i].landmarks.size(), reports[i].frame->features.size());
   }
+}
+
+TEST(SystemStart, LocalizationNeedsAMap) {
+  SystemOptions options;
+  options.camera = SyntheticSensor().camera;
+  EXPECT_THROW(System(options, PipelineKind::kSequential, {.localization_only = true}), CheckError);
+  EXPECT_EQ(System(options, PipelineKind::kSequential, {.session_name = "a"}).map(), nullptr);
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include "util/task_runner.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "hullslam/util/check.h"
@@ -86,6 +89,31 @@ TEST(ParallelRunner, ThrowsTheExceptionOfATask) {
   EXPECT_THROW(ParallelRunner(-1), CheckError);
 }
 
-}  // namespace
+TEST(RunInBackground, GivesTheNicenessThatIsAskedForButNeverALowerOne) {
+  const int before = getpriority(PRIO_PROCESS, 0);
+  int first = 0;
+  int second = 0;
+  std::thread([&] {
+    RunInBackground(before + 3);
+    first = getpriority(PRIO_PROCESS, 0);
+    RunInBackground(before + 1);
+    second = getpriority(PRIO_PROCESS, 0);
+  }).join();
+  EXPECT_EQ(first, std::min(before + 3, 19));
+  EXPECT_EQ(second, first);
+}
 
+TEST(RunInBackground, LowersThePriorityOfTheCallingThreadAlone) {
+  const int before = getpriority(PRIO_PROCESS, 0);
+  int in_thread = 0;
+  std::thread([&] {
+    RunInBackground();
+    in_thread = getpriority(PRIO_PROCESS, 0);
+  }).join();
+  EXPECT_GE(in_thread, kBackgroundNiceness);
+  EXPECT_GE(in_thread, before);
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
+}
+
+}  // namespace
 }  // namespace hullslam

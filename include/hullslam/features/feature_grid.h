@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -55,5 +56,22 @@ class FeatureGrid {
   std::vector<uint16_t> order_;             // keypoint indices, cell by cell
   std::vector<Eigen::Vector2f> positions_;  // empty: as in the keypoints
 };
+
+// Everything that matching needs to know about one image. The vectors have one entry per keypoint.
+struct FrameFeatures {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  std::vector<float> depth;  // m along the optical axis, 0 where unknown
+  FeatureGrid grid;
+
+  size_t size() const { return keypoints.size(); }
+};
+
+// The features of the keypoints with these indices, which increase. Their new indices are their
+// indices in `kept`.
+FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uint32_t> kept);
+
+// The indices of the keypoints whose depth is known, nearest first; equal depths by index.
+std::vector<uint32_t> KeypointsByDepth(const FrameFeatures& features);
 
 }  // namespace hullslam

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hullslam/bow/bow_vector.h"
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "hullslam/frame/depth_grid.h"
 #include "hullslam/frame/detection.h"
 #include "hullslam/util/id.h"

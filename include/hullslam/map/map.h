@@ -15,7 +15,6 @@
 #include "hullslam/map/map_tables.h"
 #include "hullslam/map/object_landmark.h"
 #include "hullslam/map/replacements.h"
-#include "hullslam/map/session.h"
 #include "hullslam/util/cow_table.h"
 #include "hullslam/util/id.h"
 #include "hullslam/util/recycling_table.h"

@@ -13,7 +13,6 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/geometry/sim3.h"
-#include "hullslam/map/initialisation_failure.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/tracking_failure.h"
 #include "hullslam/util/id.h"

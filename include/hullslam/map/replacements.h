@@ -26,6 +26,17 @@ class Replacements {
     return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;
   }
 
+  // The id to which `id` leads in a table: `id` itself if the table has it, else that of what has
+  // replaced it, step by step; invalid if that was erased.
+  template <typename Table>
+  IdType Resolve(const Table& table, IdType id) const {
+    while (id.IsValid() && !table.Contains(id)) {
+      const IdType* const next = Find(id);
+      id = next != nullptr ? *next : IdType();
+    }
+    return id;
+  }
+
   // Forgets replacements with an older revision, but keeps all of ids before `kept`. These then
   // lead to the id that is in use now, so they do not need the forgotten ones.
   void Forget(uint32_t revision, IdType kept = IdType(0)) {

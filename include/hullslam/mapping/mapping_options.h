@@ -18,7 +18,7 @@ struct MappingOptions {
   MappingRule culling_rule = MappingRule::kHullslam;  // of keyframes
   MappingRule landmark_rule = MappingRule::kHullslam;
   bool final_bundle_adjustment = true;  // adjusts the whole map at the end of the run
-  bool compact_keyframes = true;        // those far from the newest one (mapping/old_keyframes.h)
+  bool compact_keyframes = true;        // those far from the newest one (mapping/culling.h)
 
   void Bind(OptionTable& options);
 };

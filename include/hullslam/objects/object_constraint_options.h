@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "hullslam/costs/object_residual.h"
-#include "hullslam/costs/quadric_prior_sigmas.h"
 
 namespace hullslam {
 

@@ -36,6 +36,10 @@ struct FrameSelection {
   size_t stride = 1;
 };
 
+// The frames FIRST:LAST of a sequence of so many frames, both inclusive; a missing number is the
+// first or the last frame. Throws InputError, which begins with `option`, for any other text.
+FrameSelection ParseFrameRange(const std::string& option, const std::string& text, size_t frames);
+
 // Decodes one frame. Throws InputError for an image that ReadGreyImage() or ReadDepthImage()
 // rejects, or that does not have the size of the camera. Without a depth file the depth is empty.
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera);

@@ -21,7 +21,6 @@
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_changes.h"
 #include "hullslam/system/options.h"
-#include "hullslam/system/system_start.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/eigen_alignment.h"
 #include "hullslam/util/mapped_vector.h"
@@ -38,6 +37,17 @@ enum class PipelineKind {
   kSequential,  // reproducible to the bit
   kThreaded,    // mapping in a thread of its own; waits for it and leaves out no keyframe
   kRealtime,    // like kThreaded, but never waits; for live cameras
+};
+
+// The initial state of a System.
+struct SystemStart {
+  // The map of earlier sessions, for example from ReadMap(), made with the same camera, image
+  // pyramid and vocabulary. Tracking is lost until a frame is found in it. A map without keyframes
+  // stands for a new map.
+  Map map = {};
+  std::string session_name = {};  // for Map::sessions(), such as the name of the sequence
+  // Whether poses are found in the map without changing anything in it.
+  bool localization_only = false;
 };
 
 // The number of masks of a run that became detections, and the numbers of rejected ones by reason.

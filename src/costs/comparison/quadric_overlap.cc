@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 namespace {

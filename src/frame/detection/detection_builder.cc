@@ -11,9 +11,8 @@
 
 #include "frame/detection/detection_depth.h"
 #include "frame/detection/detection_lines.h"
-#include "frame/detection/detection_outline.h"
 #include "frame/detection/mask_region.h"
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -3,15 +3,31 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "frame/detection/detection_outline.h"
+#include "frame/detection/mask_camera.h"
 #include "hullslam/frame/detection_options.h"
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/geometry/conic.h"
 #include "hullslam/geometry/line2.h"
 
 namespace hullslam {
+
+using Polygon2 = std::vector<Eigen::Vector2d>;
+
+// The shape of a mask, undistorted, px. The polygons are closed and have positive signed area.
+struct Outline {
+  Polygon2 contour;   // contour of the largest part; its points are a few pixels apart
+  Polygon2 boundary;  // the points of the outlines of all parts
+  Polygon2 hull;      // convex hull of all parts; fewer than three corners if they have no area
+};
+
+// The parts of a mask whose area is at least `min_share` of that of its largest part, in raw
+// pixels. Parts without area are left out.
+std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share);
+
+Outline UndistortOutline(std::span<const Polygon2> parts, const MaskCamera& camera);
 
 // A line with those points of the mask's outline (undistorted, px) that decide whether it is
 // one-sided.

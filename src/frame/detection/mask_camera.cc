@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "camera/wide_lens.h"
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

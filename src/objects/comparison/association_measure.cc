@@ -8,7 +8,6 @@
 
 #include "costs/comparison/quadric_distribution.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 
 namespace hullslam {
 

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "costs/both_views.h"
 #include "costs/depth_anchor.h"
-#include "costs/pixel_error.h"
 #include "costs/quadric_prior.h"
 #include "costs/residual_kind.h"
+#include "costs/wrapped_costs.h"
 #include "objects/constraint/misfit.h"
 #include "objects/constraint/point_statistics.h"
 #include "util/lists.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "costs/robust_rows.h"
+#include "costs/wrapped_costs.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"

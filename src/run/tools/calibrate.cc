@@ -12,8 +12,6 @@
 #include "run/calibration_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/interrupt.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 #include "run/vocabularies.h"

@@ -16,7 +16,6 @@
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "util/text.h"
 

@@ -21,7 +21,6 @@
 #include "results/pose_file.h"
 #include "results/true_object_file.h"
 #include "run/command_line.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <map>
 #include <string>
@@ -11,7 +9,6 @@
 #include "exports/export_run.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "run/command_line.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 #include "util/text.h"
@@ -28,29 +25,13 @@ struct ExportArguments {
   bool quiet = false;
 };
 
-std::vector<std::string> FormatNames() {
-  std::vector<std::string> names;
-  for (const ExportFormat& format : ExportFormats()) {
-    names.emplace_back(format.name);
-  }
-  return names;
-}
-
-std::string DescribeFormats() {
-  std::string text = "Formats:\n";
-  for (const ExportFormat& format : ExportFormats()) {
-    text += fmt::format("  {:<11} {}\n", format.name, format.meaning);
-  }
-  return text;
-}
-
 void AddArguments(CLI::App& app, ExportArguments& arguments) {
   app.add_option("RUN_DIR|MAP", arguments.source.input,
                  "output folder of a run, or a file of --save-map")
       ->required();
   app.add_option("--to", arguments.format, "the format; see below")
       ->required()
-      ->check(CLI::IsMember(FormatNames()));
+      ->check(CLI::IsMember(ExportFormatNames()));
   app.add_option("--output", arguments.options.output, "the file or folder to write")->required();
   app.add_flag("--force", arguments.force, "write to a file that exists or a folder with files");
   app.add_flag("--text", arguments.options.as_text,
@@ -82,7 +63,7 @@ int RunExport(int argc, char** argv) {
   ExportArguments arguments;
   AddArguments(app, arguments);
   AddVersionAndExitCodes(app);
-  app.footer(DescribeFormats() + app.get_footer());
+  app.footer(DescribeExportFormats() + app.get_footer());
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }

@@ -8,7 +8,6 @@
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/tools/commands.h"
 #include "view/ask_scene.h"

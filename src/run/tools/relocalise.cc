@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -21,9 +20,6 @@
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
-#include "run/interrupt.h"
-#include "run/mask_arguments.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"
@@ -89,41 +85,6 @@ void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
                          "no map was made, or the program was interrupted");
 }
 
-// Frames of a sequence, `first` to `last`, inclusive.
-struct FrameRange {
-  size_t first = 0;
-  size_t last = 0;
-};
-
-// `text` is FIRST:LAST, see --help. Throws InputError if it is malformed or not in the sequence.
-FrameRange ParseRange(const std::string& option, const std::string& text, size_t frames) {
-  const size_t colon = text.find(':');
-  const std::string expected = fmt::format(
-      "{}: '{}', expected FIRST:LAST with 0 <= FIRST <= LAST "
-      "< {}, the number of frames",
-      option, text, frames);
-  if (colon == std::string::npos) {
-    throw InputError(expected);
-  }
-  const auto parse = [&](const char* begin, const char* end, size_t missing) {
-    size_t number = missing;
-    if (begin != end) {
-      const auto [rest, error] = std::from_chars(begin, end, number);
-      if (error != std::errc() || rest != end) {
-        throw InputError(expected);
-      }
-    }
-    return number;
-  };
-  const char* const begin = text.data();
-  const FrameRange range{parse(begin, begin + colon, 0),
-                         parse(begin + colon + 1, begin + text.size(), frames - 1)};
-  if (range.first > range.last || range.last >= frames) {
-    throw InputError(expected);
-  }
-  return range;
-}
-
 // Opens the sequence with the settings of the map or of the queries. Warnings are printed only for
 // the queries: their overrides contain those of the map.
 OpenedDataset OpenInput(const RelocaliseArguments& arguments, const FoundDataset& found,
@@ -164,14 +125,14 @@ struct RelocaliseInputs {
   SystemOptions map_options;
   SystemOptions query_options;
   SequenceMasks masks;
-  FrameRange map_frames;
+  FrameSelection map_frames;
   std::vector<size_t> queries;  // indices of frames, increasing
 };
 
 // Chooses frames of the range that have a true pose.
 std::vector<size_t> ChooseFrames(const RelocaliseArguments& arguments,
                                  const ImageSequence& sequence, const Trajectory& groundtruth,
-                                 const FrameRange& range) {
+                                 const FrameSelection& range) {
   std::vector<size_t> frames;
   for (size_t i = range.first; i <= range.last; ++i) {
     if (InterpolatePose(groundtruth, sequence.frames[i].timestamp, kMaxPoseGap)) {
@@ -193,10 +154,10 @@ RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
   Trajectory groundtruth = NeedGroundtruth(arguments, found, sequence);
   SystemOptions map_options = std::move(opened.settings.options);
   SystemOptions query_options = OpenInput(arguments, found, true).settings.options;
-  const FrameRange map_frames =
-      ParseRange("--map-frames", arguments.map_frames, sequence.frames.size());
-  const FrameRange query_frames =
-      ParseRange("--query-frames", arguments.query_frames, sequence.frames.size());
+  const FrameSelection map_frames =
+      ParseFrameRange("--map-frames", arguments.map_frames, sequence.frames.size());
+  const FrameSelection query_frames =
+      ParseFrameRange("--query-frames", arguments.query_frames, sequence.frames.size());
   std::vector<size_t> queries = ChooseFrames(arguments, sequence, groundtruth, query_frames);
   SequenceMasks masks(
       RequestOf(arguments.masks, arguments.masks_format, sequence, map_options.camera),
@@ -225,7 +186,7 @@ struct MadeMap {
 std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
                                const RelocaliseInputs& inputs) {
   System system(inputs.map_options, PipelineKind::kSequential);
-  const FrameRange& range = inputs.map_frames;
+  const FrameSelection& range = inputs.map_frames;
   Progress progress(range.last - range.first + 1, arguments.quiet);
   for (size_t i = range.first; i <= range.last && !IsInterrupted(); ++i) {
     system.Track(LoadFrame(inputs, inputs.map_options.camera, i));

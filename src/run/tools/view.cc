@@ -5,7 +5,6 @@
 
 #include "files/staged_file.h"
 #include "run/command_line.h"
-#include "run/messages.h"
 #include "run/more_outputs.h"
 #include "run/program.h"
 #include "run/tools/commands.h"

@@ -11,8 +11,6 @@
 #include "datasets/training_images.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "run/command_line.h"
-#include "run/interrupt.h"
-#include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/commands.h"

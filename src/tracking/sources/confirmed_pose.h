@@ -4,15 +4,27 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
+#include "places/landmark_search.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
+#include "tracking/pose_refinement.h"
 #include "tracking/sources/pose_source.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
+
+// The pose on which most of the matches between keypoints of the frame and landmarks agree, found
+// by RANSAC without an initial pose and then refined. The estimate has the landmarks that agree.
+// Null if fewer than `min_inliers` agree. `purpose` makes the samples different from those of other
+// searches for the same frame.
+std::optional<PoseEstimate> PoseOfMatches(const Frame& frame, const Map& map,
+                                          const TrackingContext& context,
+                                          std::span<const FoundLandmark> matches,
+                                          size_t min_inliers, std::string_view purpose);
 
 // A frame whose pose is confirmed by its local map, and the source of its first pose.
 struct ConfirmedPose {

@@ -9,8 +9,8 @@
 
 #include "estimators/two_views.h"
 #include "hullslam/geometry/rigid3.h"
+#include "places/landmark_search.h"
 #include "places/similar_places.h"
-#include "places/wide_matches.h"
 #include "util/hash.h"
 
 namespace hullslam {

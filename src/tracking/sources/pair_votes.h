@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "estimators/two_views.h"
-#include "hullslam/features/feature_set.h"
-#include "hullslam/features/frame_features.h"
+#include "hullslam/features/feature_grid.h"
 #include "hullslam/map/map.h"
 #include "matching/match.h"
 #include "tracking/local_map_tracking.h"

@@ -4,7 +4,7 @@
 #include "matching/by_descriptor.h"
 #include "places/landmark_search.h"
 #include "tracking/pose_refinement.h"
-#include "tracking/sources/pose_of_matches.h"
+#include "tracking/sources/confirmed_pose.h"
 #include "tracking/sources/pose_source.h"
 
 namespace hullslam {

@@ -6,7 +6,7 @@
 #include "map/keyframe_graph.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
-#include "tracking/sources/pose_of_matches.h"
+#include "tracking/sources/confirmed_pose.h"
 #include "tracking/sources/pose_source.h"
 #include "util/id_set.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "map/islands.h"
-#include "places/wide_matches.h"
-#include "tracking/sources/pose_of_matches.h"
+#include "places/landmark_search.h"
+#include "tracking/sources/confirmed_pose.h"
 #include "tracking/sources/pose_source.h"
 #include "util/id_set.h"
 

@@ -8,7 +8,6 @@
 
 #include "costs/object_cost_laws.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

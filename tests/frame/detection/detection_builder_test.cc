@@ -12,7 +12,6 @@
 
 #include "frame/made_masks.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
 #include "support/fisheye_camera.h"

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/polyline.h"
+#include "geometry/polygon.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -7,7 +7,6 @@
 
 #include "frame/made_masks.h"
 #include "geometry/polygon.h"
-#include "geometry/polyline.h"
 #include "hullslam/geometry/conic.h"
 #include "support/fisheye_camera.h"
 

@@ -15,7 +15,7 @@
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
 #include "tracking/pose_refinement.h"
-#include "tracking/sources/pose_of_matches.h"
+#include "tracking/sources/confirmed_pose.h"
 #include "util/id_set.h"
 
 namespace hullslam {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/robust_rows.h"
+#include "costs/wrapped_costs.h"
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include "costs/manifolds.h"
 
 namespace hullslam {
 namespace {
@@ -68,6 +72,59 @@ double RobustRowsCost::CostOf(double residual) const {
 
 double RobustRowsCost::WeightOf(double residual) const {
   return weight_ * Rho(loss_.get(), residual * residual).second;
+}
+
+DefinedCost::DefinedCost(std::unique_ptr<ceres::CostFunction> cost) : cost_(std::move(cost)) {
+  set_num_residuals(cost_->num_residuals());
+  *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
+}
+
+bool DefinedCost::Evaluate(double const* const* parameters, double* residuals,
+                           double** jacobians) const {
+  if (cost_->Evaluate(parameters, residuals, jacobians)) {
+    return true;
+  }
+  std::fill_n(residuals, num_residuals(), kFar);
+  for (size_t i = 0; jacobians != nullptr && i < parameter_block_sizes().size(); ++i) {
+    if (jacobians[i] != nullptr) {
+      std::fill_n(jacobians[i], num_residuals() * parameter_block_sizes()[i], 0.0);
+    }
+  }
+  return true;
+}
+
+BothViewsCost::BothViewsCost(std::unique_ptr<ceres::CostFunction> left,
+                             std::unique_ptr<ceres::CostFunction> right, double baseline)
+    : ObjectCost(static_cast<size_t>(left->num_residuals() + right->num_residuals())),
+      left_(std::move(left)),
+      right_(std::move(right)),
+      right_from_left_(-baseline, 0.0, 0.0) {}
+
+bool BothViewsCost::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  if (!left_->Evaluate(parameters, residuals, jacobians)) {
+    return false;
+  }
+  Rigid3 right_pose = FromBlock(parameters[0]);
+  right_pose.translation += right_from_left_;
+  const PoseBlock right_block = ToBlock(right_pose);
+  const std::array<const double*, 3> of_right = {right_block.data(), parameters[1], parameters[2]};
+  const int above = left_->num_residuals();
+  std::array<double*, 3> below = {};
+  for (size_t i = 0; jacobians != nullptr && i < below.size(); ++i) {
+    below.at(i) =
+        jacobians[i] == nullptr ? nullptr : jacobians[i] + above * parameter_block_sizes()[i];
+  }
+  if (!right_->Evaluate(of_right.data(), residuals + above,
+                        jacobians != nullptr ? below.data() : nullptr)) {
+    return false;
+  }
+  for (int i = 0; below[0] != nullptr && i < right_->num_residuals(); ++i) {
+    Eigen::Map<Eigen::Vector3d> by_turn(below[0] + 7 * i);
+    const Eigen::Map<const Eigen::Vector3d> by_shift(below[0] + 7 * i + 3);
+    by_turn += by_shift.cross(right_from_left_);
+  }
+  return true;
 }
 
 }  // namespace hullslam

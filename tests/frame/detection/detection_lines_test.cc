@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/detection/detection_outline.h"
+#include "frame/detection/detection_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/session.h"
+#include "hullslam/map/map_tables.h"
 
 #include <algorithm>
 
