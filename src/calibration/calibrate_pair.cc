@@ -187,16 +187,20 @@ std::vector<MatchedPair> MatchPairs(std::span<const CameraRecording> recordings,
   return IsRequested(cancellation) ? std::vector<MatchedPair>() : pairs;
 }
 
-PairEvidence MeasureYaw(const CalibrationProblem& problem, const CameraModel& model) {
-  const CameraCalibrationResult result =
-      CalibrateCamera(problem, model, {.choice = {.distortion = false, .readout = false}});
-  const ParameterEvidence* const offset = result.evidence.Find("disparity_offset");
-  if (offset == nullptr) {
-    return {};
+PairEvidence TakeYaw(CameraCalibrationResult& result) {
+  constexpr const char* kName = "disparity_offset";
+  PairEvidence yaw;
+  if (const ParameterEvidence* const offset = result.evidence.Find(kName)) {
+    const PinholeCamera& camera = result.model.camera;
+    yaw = {.value = YawOf(offset->value, camera),
+           .sigma = std::abs(YawOf(offset->sigma, camera)),
+           .is_determined = offset->IsDetermined()};
   }
-  return {.value = YawOf(offset->value, model.camera),
-          .sigma = std::abs(YawOf(offset->sigma, model.camera)),
-          .is_determined = offset->IsDetermined()};
+  std::erase_if(result.evidence.parameters,
+                [](const ParameterEvidence& one) { return one.parameter.name == kName; });
+  std::erase(result.calibrated, kName);
+  result.model.disparity_offset = 0.0;
+  return yaw;
 }
 
 StereoCalibration PairCalibration::Cameras(const StereoRectifier& rectifier) const {
@@ -213,12 +217,13 @@ StereoCalibration RectifiedPair(const PinholeCamera& camera) {
 }
 
 PairCalibration CalibratePair(SystemOptions options, std::span<const CameraRecording> recordings,
-                              const RecordedCalibrationOptions& calibration) {
+                              RecordedCalibrationOptions calibration) {
   constexpr int kMostRounds = 4;
   constexpr double kSigmas = 4.0;
   constexpr double kLeastOffset = 0.1;  // px of disparity
   PairCalibration pair;
   pair.given = options.camera;
+  calibration.camera.choice.disparity = true;
   const std::vector<MatchedPair> matched =
       MatchPairs(recordings, pair.given, calibration.cancellation);
   const StereoRectifier as_given(RectifiedPair(pair.given), "the pair");
@@ -240,7 +245,7 @@ PairCalibration CalibratePair(SystemOptions options, std::span<const CameraRecor
     if (IsRequested(calibration.cancellation)) {
       break;
     }
-    const PairEvidence more = MeasureYaw(pair.recorded.problem, pair.recorded.result.model);
+    const PairEvidence more = TakeYaw(pair.recorded.result);
     pair.yaw = {yaw + more.value, more.sigma, more.is_determined};
     const double least = kLeastOffset / pair.given.fx;
     // After the first change, what is left is followed until it is no more than chance.

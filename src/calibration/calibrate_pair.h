@@ -22,9 +22,8 @@ std::vector<PairMatch> MatchAnywhere(const cv::Mat& left, const cv::Mat& right,
 std::vector<MatchedPair> MatchPairs(std::span<const CameraRecording> recordings,
                                     const PinholeCamera& camera, const Cancellation* cancellation);
 
-// What the disparities of a problem tell about the yaw. It counts as determined up to 0.1 px of
-// disparity. `camera` is that of the problem.
-PairEvidence MeasureYaw(const CalibrationProblem& problem, const CameraModel& model);
+// Takes the number for the offset of disparities out of a result, and tells it as a yaw.
+PairEvidence TakeYaw(CameraCalibrationResult& result);
 
 struct PairCalibration {
   RecordedCalibration recorded;  // of the images that are rectified with the deviation
@@ -45,10 +44,11 @@ StereoCalibration RectifiedPair(const PinholeCamera& camera);
 
 // Calibrates the pair of `options`: first the rotation of the right camera from the rows of points
 // (FitPairRows), then the camera as CalibrateFromRecordings() does, from images that are rectified
-// with this rotation, then the yaw from the disparities of its points. If the yaw changes, SLAM
-// runs again. Throws InputError likewise, and if the images of the pairs do not belong together in
-// time.
+// with this rotation. There the disparities of points have an offset, as one more number: it is the
+// yaw, and without it disparities that are wrong by a tenth of a pixel would change f. If the yaw
+// changes, SLAM runs again. Throws InputError likewise, and if the images of the pairs do not
+// belong together in time.
 PairCalibration CalibratePair(SystemOptions options, std::span<const CameraRecording> recordings,
-                              const RecordedCalibrationOptions& calibration);
+                              RecordedCalibrationOptions calibration);
 
 }  // namespace hullslam

@@ -299,8 +299,13 @@ void FitDelay(std::span<const MatchedPair> pairs, const RowFit& fit, PairRows& r
   const auto all = Eigen::Map<const Eigen::ArrayXd>(slopes.data(), std::ssize(slopes));
   const auto count = static_cast<double>(pieces);
   rows.frames_late_sigma = std::sqrt((count - 1.0) / count * (all - all.mean()).square().sum());
+  double squares = 0.0;
+  for (const Eigen::Vector2d& one : seen) {
+    squares += one.x() * one.x() / static_cast<double>(seen.size());
+  }
   rows.is_late =
-      std::abs(rows.frames_late) > std::max(kLeastLate, kCertain * rows.frames_late_sigma);
+      std::abs(rows.frames_late) > std::max(kLeastLate, kCertain * rows.frames_late_sigma) &&
+      std::abs(rows.frames_late) * std::sqrt(squares) > kLeastChange;
 }
 
 // Whether the free numbers change rows by more than chance, and by more than is usual.

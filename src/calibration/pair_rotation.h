@@ -97,7 +97,7 @@ struct PairRows {
 // Angles above 0.1 rad and offsets above 40 px are not believed.
 //
 // The right images are late by d frames if the mean error of the rows of a pair is d times the
-// motion of the left image to the next one. Then nothing is changed.
+// motion of the left image to the next one, by 4 sigmas and 0.25 px. Then nothing is changed.
 PairRows FitPairRows(std::span<const MatchedPair> pairs, const PinholeCamera& camera,
                      double yaw = 0.0);
 
