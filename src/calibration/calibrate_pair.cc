@@ -22,6 +22,7 @@ namespace {
 constexpr size_t kMostMatchedPairs = 60;
 constexpr int kMostBits = 50;
 constexpr double kSecondBest = 0.8;
+constexpr double kSigmasOfYaw = 4.0;  // by which it is certainly not 0
 
 // The most similar of several descriptors, and how similar the next one is.
 struct Best {
@@ -194,7 +195,8 @@ PairEvidence TakeYaw(CameraCalibrationResult& result) {
     const PinholeCamera& camera = result.model.camera;
     yaw = {.value = YawOf(offset->value, camera),
            .sigma = std::abs(YawOf(offset->sigma, camera)),
-           .is_determined = offset->IsDetermined()};
+           .is_determined =
+               offset->IsDetermined() || std::abs(offset->value) > kSigmasOfYaw * offset->sigma};
   }
   std::erase_if(result.evidence.parameters,
                 [](const ParameterEvidence& one) { return one.parameter.name == kName; });
@@ -219,7 +221,6 @@ StereoCalibration RectifiedPair(const PinholeCamera& camera) {
 PairCalibration CalibratePair(SystemOptions options, std::span<const CameraRecording> recordings,
                               RecordedCalibrationOptions calibration) {
   constexpr int kMostRounds = 4;
-  constexpr double kSigmas = 4.0;
   constexpr double kLeastOffset = 0.1;  // px of disparity
   PairCalibration pair;
   pair.given = options.camera;
@@ -249,7 +250,7 @@ PairCalibration CalibratePair(SystemOptions options, std::span<const CameraRecor
     pair.yaw = {yaw + more.value, more.sigma, more.is_determined};
     const double least = kLeastOffset / pair.given.fx;
     // After the first change, what is left is followed until it is no more than chance.
-    const double most = yaw == 0.0 ? std::max(least, kSigmas * more.sigma) : more.sigma;
+    const double most = yaw == 0.0 ? std::max(least, kSigmasOfYaw * more.sigma) : more.sigma;
     if (!more.is_determined || std::abs(more.value) <= most || round == kMostRounds) {
       break;
     }

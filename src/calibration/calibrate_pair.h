@@ -22,7 +22,8 @@ std::vector<PairMatch> MatchAnywhere(const cv::Mat& left, const cv::Mat& right,
 std::vector<MatchedPair> MatchPairs(std::span<const CameraRecording> recordings,
                                     const PinholeCamera& camera, const Cancellation* cancellation);
 
-// Takes the number for the offset of disparities out of a result, and tells it as a yaw.
+// Takes the number for the offset of disparities out of a result, and tells it as a yaw. It is also
+// determined if it is not 0 by 4 sigmas.
 PairEvidence TakeYaw(CameraCalibrationResult& result);
 
 struct PairCalibration {

@@ -25,7 +25,7 @@ struct Turned {
 
 // Pairs of the room; a frame that is a multiple of five cannot be read.
 CameraRecording RoomRecording(const MadeRoom& room, const Turned& turned) {
-  return {24, [&room, turned](size_t frame, const PinholeCamera& camera) {
+  return {14, [&room, turned](size_t frame, const PinholeCamera& camera) {
             if (frame % 5 == 0) {
               throw InputError("cannot be read");
             }
@@ -60,7 +60,7 @@ TEST(MatchPairs, TheRotationOfImagesIsFound) {
                               Turned{.turn = {-3.0 * kOneDegree, 0.0, 0.0}}}) {
     const std::vector<CameraRecording> recordings = {RoomRecording(room, truth)};
     const std::vector<MatchedPair> pairs = MatchPairs(recordings, camera, nullptr);
-    EXPECT_EQ(pairs.size(), 19U);
+    EXPECT_EQ(pairs.size(), 11U);
     const PairRows rows = FitPairRows(pairs, camera);
     const bool is_turned = truth.turn.norm() > 0.0;
     EXPECT_EQ(rows.is_changed, is_turned);
