@@ -110,7 +110,8 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
   // 4 sigmas for as many numbers: a right camera is practically never changed.
   const auto numbers = static_cast<double>(parameters.size());
   result.is_changed =
-      options.guess || result.evidence_ratio > numbers + 4.0 * std::sqrt(2.0 * numbers);
+      options.guess ||
+      (numbers > 0.0 && result.evidence_ratio > numbers + 4.0 * std::sqrt(2.0 * numbers));
   if (result.is_changed) {
     result.model = free.model();
     result.model.depth_scale = given.depth_scale;

@@ -198,7 +198,9 @@ void ApplyModel(const CameraModel& model, SystemOptions& options) {
   options.camera = model.camera;
   options.readout_time = model.readout_time;
   options.readout_direction = model.readout_direction;
-  options.depth.disparity_offset = model.disparity_offset;
+  if (!model.is_pair) {  // that of a pair is not known to SLAM, but is a yaw (CalibratePair)
+    options.depth.disparity_offset = model.disparity_offset;
+  }
   options.depth.time_offset = model.depth_time;
   Eigen::Map<Eigen::Matrix<double, 6, 1>>(options.depth.pose.data()) = model.depth_pose;
 }

@@ -57,8 +57,9 @@ std::string DescribeOthers(const fs::path& path, SensorKind chosen) {
 
 // Throws InputError that begins with `path` for pairs that cannot be used: swapped, twice the same
 // image, not rectified. Some pairs of the sequence are looked at; a pair that cannot be read is
-// reported by the run.
-void CheckPairs(const fs::path& path, const ImageSequence& sequence, const PinholeCamera& camera) {
+// reported by the run. Without `need_rows` pairs need not be rectified; else a doubt is a warning.
+void CheckPairs(const fs::path& path, bool need_rows, const PinholeCamera& camera,
+                ImageSequence& sequence) {
   constexpr size_t kPairs = 3;
   PairCheck check;
   for (size_t i = 0; i < std::min(kPairs, sequence.frames.size()); ++i) {
@@ -70,8 +71,11 @@ void CheckPairs(const fs::path& path, const ImageSequence& sequence, const Pinho
       continue;
     }
   }
-  if (const auto fault = check.FindFault()) {
+  if (const auto fault = check.FindFault(need_rows)) {
     throw InputError(path.string() + ": " + *fault);
+  }
+  if (const auto doubt = check.FindDoubt(); doubt && need_rows) {
+    sequence.warnings.push_back(path.string() + ": " + *doubt);
   }
 }
 
@@ -207,7 +211,7 @@ OpenedDataset OpenDataset(const Dataset& dataset, const DatasetRequest& request)
   SystemOptions& options = opened.settings.options;
   options.sensor = request.sensor;
   if (request.sensor == SensorKind::kStereo) {
-    CheckPairs(request.path, opened.sequence, options.camera);
+    CheckPairs(request.path, request.need_rows, options.camera, opened.sequence);
     opened.notes.push_back(
         fmt::format("stereo: baseline {:.4f} m, focal length {:.1f} px in the rectified images",
                     options.camera.bf / options.camera.fx, options.camera.fx));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +23,7 @@ constexpr double kSame = 0.05;       // px; two copies of one image differ by le
 // Calibrated pairs are off by a few tenths of a pixel. Matches are sought in rows that are two
 // pixels away, so a pair that is off by more loses most of them.
 constexpr double kMostRowDifference = 1.5;  // px
+constexpr double kDoubtfulRows = 0.5;       // px
 
 double MedianOf(std::vector<double> values) { return Median(std::move(values)); }
 
@@ -59,6 +61,7 @@ PairCheck::PairRows PairCheck::Add(const ExtractedFeatures& a, const ExtractedFe
       const Eigen::Vector2d moved = (a.keypoints[i].raw - b.keypoints[found].raw).cast<double>();
       columns_.push_back(moved.x());
       rows_.push_back(moved.y());
+      places_.emplace_back(a.keypoints[i].raw.x(), a.keypoints[i].raw.y(), 1.0);
       ++counts.matches;
       counts.off += std::abs(moved.y()) > kMostRowDifference ? 1 : 0;
     }
@@ -66,7 +69,7 @@ PairCheck::PairRows PairCheck::Add(const ExtractedFeatures& a, const ExtractedFe
   return counts;
 }
 
-std::optional<std::string> PairCheck::FindFault() const {
+std::optional<std::string> PairCheck::FindFault(bool need_rows) const {
   if (rows_.size() < kFewestMatches) {
     return std::nullopt;
   }
@@ -83,13 +86,54 @@ std::optional<std::string> PairCheck::FindFault() const {
         "are swapped",
         to_the_right, columns_.size());
   }
-  if (std::abs(row) > kMostRowDifference) {
+  if (need_rows && std::abs(row) > kMostRowDifference) {
     return fmt::format(
         "points lie {:.1f} px {} in the right image than in the left one (median of {}), expected "
-        "equal rows: the calibration does not fit, or the images are not rectified",
+        "equal rows: the calibration does not fit (`hullslam calibrate` finds how the right camera "
+        "is turned), or the images are not rectified",
         std::abs(row), row > 0.0 ? "higher" : "lower", rows_.size());
   }
   return std::nullopt;
+}
+
+std::optional<std::string> PairCheck::FindDoubt() const {
+  constexpr size_t kFewest = 100;
+  constexpr int kIterations = 10;
+  if (rows_.size() < kFewest) {
+    return std::nullopt;
+  }
+  // Least squares with the loss of Cauchy, whose scale follows the errors.
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  std::vector<double> errors = rows_;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    std::vector<double> lengths;
+    for (const double error : errors) {
+      lengths.push_back(std::abs(error));
+    }
+    const double scale = 3.5 * std::max(kSame, MedianOf(std::move(lengths)));
+    Eigen::Matrix3d hessian = 1e-9 * Eigen::Matrix3d::Identity();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      const double weight = 1.0 / (1.0 + errors[i] * errors[i] / (scale * scale));
+      hessian += weight * places_[i] * places_[i].transpose();
+      gradient += weight * rows_[i] * places_[i];
+    }
+    plane = hessian.ldlt().solve(gradient);
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      errors[i] = rows_[i] - plane.dot(places_[i]);
+    }
+  }
+  std::vector<double> off;
+  for (const Eigen::Vector3d& place : places_) {
+    off.push_back(std::abs(plane.dot(place)));
+  }
+  const double median = MedianOf(std::move(off));
+  return median < kDoubtfulRows
+             ? std::nullopt
+             : std::optional(fmt::format(
+                   "the rows of points in the right image are wrong by {:.1f} px (median of {}); "
+                   "`hullslam calibrate` finds how the right camera is turned",
+                   median, rows_.size()));
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <mutex>
 #include <opencv2/core/mat.hpp>
@@ -34,12 +35,17 @@ class PairCheck {
 
   size_t matches() const { return rows_.size(); }
   // The fault of the pairs, for a message that begins with their name; nothing if they are as
-  // they should be, or if there are too few matches to say so.
-  std::optional<std::string> FindFault() const;
+  // they should be, or if there are too few matches to say so. Without `need_rows`, points may be
+  // in other rows.
+  std::optional<std::string> FindFault(bool need_rows = true) const;
+  // A warning likewise for pairs that can be used, but would match better if they were calibrated:
+  // the rows of a plane that is fitted to all matches differ by more than half a pixel.
+  std::optional<std::string> FindDoubt() const;
 
  private:
-  std::vector<double> columns_;  // left - right, px, of each match
-  std::vector<double> rows_;     // left - right, px
+  std::vector<double> columns_;          // left - right, px, of each match
+  std::vector<double> rows_;             // left - right, px
+  std::vector<Eigen::Vector3d> places_;  // of the left points: x, y, px, and 1
 };
 
 // Finds input that a run would take without a word, though it cannot be what the user meant: depth

@@ -80,7 +80,10 @@ void CheckPair(const StereoCalibration& pair, const std::string& origin) {
 }  // namespace
 
 StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std::string& origin)
-    : left_{calibration.left}, right_{calibration.right}, camera_(calibration.left) {
+    : calibration_(calibration),
+      left_{calibration.left},
+      right_{calibration.right},
+      camera_(calibration.left) {
   CheckPair(calibration, origin);
   if (IsRectified(calibration)) {
     camera_.bf = -calibration.right_from_left.translation.x() * camera_.fx;

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -33,7 +35,8 @@ std::vector<OpenedDataset> OpenAll(const CalibrationRun& run) {
     opened.push_back(OpenAnyDataset(any, {.path = sequence,
                                           .settings = run.settings,
                                           .overrides = run.overrides,
-                                          .selection = run.selection}));
+                                          .selection = run.selection,
+                                          .need_rows = run.is_unknown}));
     const PinholeCamera& camera = opened.back().settings.options.camera;
     const PinholeCamera& first = opened.front().settings.options.camera;
     if (camera.width != first.width || camera.height != first.height) {
@@ -47,12 +50,95 @@ std::vector<OpenedDataset> OpenAll(const CalibrationRun& run) {
   return opened;
 }
 
+// `opened` must outlive them.
+std::vector<CameraRecording> RecordingsOf(const CalibrationRun& run,
+                                          const std::vector<OpenedDataset>& opened) {
+  std::vector<CameraRecording> recordings;
+  for (const OpenedDataset& one : opened) {
+    const ImageSequence& sequence = one.sequence;
+    const size_t frames = std::min(run.max_frames, sequence.frames.size());
+    recordings.push_back({frames, [&sequence](size_t frame, const auto& camera) {
+                            return sequence.load(sequence.frames[frame], camera);
+                          }});
+  }
+  return recordings;
+}
+
 std::string NumberWithUnit(const ParameterEvidence& one, double value) {
   return one.parameter.unit == "s"     ? fmt::format("{:.2f} ms", 1e3 * value)
          : one.parameter.unit == "m"   ? fmt::format("{:.2f} mm", 1e3 * value)
          : one.parameter.unit == "rad" ? fmt::format("{:.3f} deg", 180.0 / 3.14159265 * value)
          : one.parameter.unit.empty()  ? fmt::format("{:.5f}", value)
                                        : fmt::format("{:.2f} {}", value, one.parameter.unit);
+}
+
+// The rectifier that has made the images of a pair.
+StereoRectifier RectifierOf(const ImageSequence& sequence, const PinholeCamera& camera) {
+  const auto warp = std::ranges::find_if(
+      sequence.warps, [](const ImageWarp& one) { return one.rectifier != nullptr; });
+  return warp != sequence.warps.end() ? *warp->rectifier
+                                      : StereoRectifier(RectifiedPair(camera), "the pair");
+}
+
+// The calibrated cameras as read; absent if both are rectified, so that one camera describes them.
+std::optional<StereoCalibration> CamerasOf(const PairCalibration& pair,
+                                           const ImageSequence& sequence) {
+  const StereoRectifier rectifier = RectifierOf(sequence, pair.given);
+  return pair.is_changed || !rectifier.IsIdentity() ? std::optional(pair.Cameras(rectifier))
+                                                    : std::nullopt;
+}
+
+// A row of the table of a pair's numbers.
+struct PairRow {
+  std::string name;
+  std::string value;
+  std::string sigma;
+  bool is_determined = false;
+  bool is_changed = false;
+  bool agrees = false;
+};
+
+std::vector<PairRow> RowsOf(const PairCalibration& pair) {
+  std::vector<PairRow> rows;
+  const auto add = [&](const char* name, const PairEvidence& one, bool is_angle, bool is_changed) {
+    const auto text = [&](double value) {
+      return is_angle ? fmt::format("{:.3f} deg", value * 180.0 / std::numbers::pi)
+                      : fmt::format("{:.2f} px", value);
+    };
+    rows.push_back({name, text(one.value), text(one.sigma), one.is_determined,
+                    is_changed && one.is_determined, std::abs(one.value) <= 2.0 * one.sigma});
+  };
+  const bool is_changed = pair.rows.is_changed;
+  add("pitch", pair.rows.Of(PairNumber::kPitch), true, is_changed);
+  add("roll", pair.rows.Of(PairNumber::kRoll), true, is_changed);
+  add("yaw", pair.yaw, true, pair.deviation.turn.y() != 0.0);
+  add("row_offset", pair.rows.Of(PairNumber::kRowOffset), false, is_changed);
+  add("baseline_down", pair.rows.Of(PairNumber::kDown), true, is_changed);
+  add("baseline_ahead", pair.rows.Of(PairNumber::kAhead), true, is_changed);
+  return rows;
+}
+
+void PrintPair(const PairCalibration& pair) {
+  Print("the right camera, against the left one, from the rows of {} points:\n", pair.rows.matches);
+  bool is_all = true;
+  for (const PairRow& row : RowsOf(pair)) {
+    Print("{:<17} {:>12} {:>12} {:>11}  {}\n", row.name, "0", row.is_determined ? row.value : "-",
+          row.sigma,
+          row.is_changed       ? ""
+          : !row.is_determined ? "not determined, so it is kept"
+          : row.agrees         ? "agrees, so it is kept"
+                               : "too small to matter, so it is kept");
+    is_all = is_all && row.is_determined;
+  }
+  Print("{:<17} {:>12} {:>12} {:>11}  no images tell its length; measure it\n", "baseline",
+        fmt::format("{:.4f} m", pair.given.bf / pair.given.fx), "-", "");
+  Print("rows: median error {:.2f} -> {:.2f} px\n", pair.rows.median_before,
+        pair.is_changed ? pair.rows.median : pair.rows.median_before);
+  if (!is_all) {
+    Print(
+        "to know more about the pair: let things near and far reach all parts of the images, and "
+        "move sideways\n");
+  }
 }
 
 }  // namespace
@@ -67,17 +153,10 @@ void ChooseAnyFieldOfView(const Dataset& dataset, DatasetChoices& choices) {
 }
 
 std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
-  std::vector<OpenedDataset> opened = OpenAll(run);
+  const std::vector<OpenedDataset> opened = OpenAll(run);
   SystemOptions options = opened.front().settings.options;
   options.vocabulary = ChooseVocabulary(run.vocabulary, run.is_quiet);
-  std::vector<CameraRecording> recordings;
-  for (const OpenedDataset& one : opened) {
-    const ImageSequence& sequence = one.sequence;
-    const size_t frames = std::min(run.max_frames, sequence.frames.size());
-    recordings.push_back({frames, [&sequence](size_t frame, const auto& camera) {
-                            return sequence.load(sequence.frames[frame], camera);
-                          }});
-  }
+  const std::vector<CameraRecording> recordings = RecordingsOf(run, opened);
   const bool is_pair = MakeSensor(options).IsStereo();
   std::unique_ptr<Progress> progress;
   RecordedCalibrationOptions calibration{
@@ -106,7 +185,12 @@ std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
     calibration.camera.trusted_focal_length = options.camera.fx;
   }
   CalibratedRun calibrated;
-  calibrated.calibration = CalibrateFromRecordings(options, recordings, calibration);
+  if (is_pair && !run.is_unknown) {
+    calibrated.pair = CalibratePair(options, recordings, calibration);
+    calibrated.calibration = calibrated.pair->recorded;
+  } else {
+    calibrated.calibration = CalibrateFromRecordings(options, recordings, calibration);
+  }
   if (progress) {
     progress->Clear();
   }
@@ -116,6 +200,9 @@ std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run) {
   }
   calibrated.options = std::move(options);
   ApplyModel(calibrated.calibration.result.model, calibrated.options);
+  if (calibrated.pair) {
+    calibrated.cameras = CamerasOf(*calibrated.pair, opened.front().sequence);
+  }
   for (const std::filesystem::path& sequence : run.sequences) {
     calibrated.sequences.push_back(sequence.string());
   }
@@ -160,7 +247,10 @@ void PrintCalibration(const CalibratedRun& calibrated) {
   for (const std::string& one : advice) {
     Print("to know more: {}\n", one);
   }
-  if (!result.is_changed) {
+  if (calibrated.pair) {
+    PrintPair(*calibrated.pair);
+  }
+  if (!result.is_changed && !(calibrated.pair && calibrated.pair->is_changed)) {
     Print("the camera agrees with the {}; nothing was changed\n",
           calibrated.sequences.size() > 1 ? "recordings" : "recording");
   }
@@ -177,6 +267,13 @@ std::vector<std::string> OriginOf(const CalibratedRun& calibrated) {
         result.IsCalibrated(one.parameter.name)
             ? fmt::format("{}: sigma {}", one.parameter.name, NumberWithUnit(one, one.sigma))
             : one.parameter.name + ": as it was given");
+  }
+  if (calibrated.pair) {
+    for (const PairRow& row : RowsOf(*calibrated.pair)) {
+      lines.push_back(row.is_changed ? fmt::format("{} of the right camera: {}, sigma {}", row.name,
+                                                   row.value, row.sigma)
+                                     : row.name + " of the right camera: as it was given");
+    }
   }
   return lines;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/calibrate_pair.h"
 #include "calibration/determined.h"
 #include "calibration/recorded_camera.h"
 #include "run/dataset_arguments.h"
@@ -34,6 +35,9 @@ void ChooseAnyFieldOfView(const Dataset& dataset, DatasetChoices& choices);
 
 struct CalibratedRun {
   RecordedCalibration calibration;
+  std::optional<PairCalibration> pair;
+  // Both cameras of a pair as read, calibrated, if they or the given ones are not rectified.
+  std::optional<StereoCalibration> cameras;
   SystemOptions options;  // with the calibrated camera
   std::vector<std::string> sequences;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/util/error.h"
 #include "run/calibration_run.h"
 #include "run/command_line.h"
 #include "run/dataset_arguments.h"
@@ -53,6 +54,12 @@ bool SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoic
   }
   if (!arguments.quiet) {
     PrintCalibration(*calibrated);
+  }
+  if (calibrated->pair && calibrated->pair->is_changed) {
+    throw InputError(
+        "the right camera is turned against the left one, which --self-calibrate cannot use: "
+        "expected "
+        "`hullslam calibrate SEQUENCE --output camera.yaml`, then --settings camera.yaml");
   }
   std::vector<std::string> overrides = OverridesOf(calibrated->options);
   overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());

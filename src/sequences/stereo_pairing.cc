@@ -138,7 +138,8 @@ void RectifyPairs(const std::shared_ptr<const StereoRectifier>& rectifier,
                                 bool /*is_nearest*/) { return rectifier->Rectify(image, side); },
            .pixel = [rectifier](const Eigen::Vector2d& pixel,
                                 ImageSide side) { return rectifier->Rectify(pixel, side); },
-           .after_from_before = is_turned ? std::optional(turn) : std::nullopt},
+           .after_from_before = is_turned ? std::optional(turn) : std::nullopt,
+           .rectifier = rectifier},
           sequence);
 }
 

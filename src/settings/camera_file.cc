@@ -123,6 +123,32 @@ std::vector<NamedSetting> CameraSettings(const PinholeCamera& camera) {
   return settings;
 }
 
+std::vector<NamedSetting> RightCameraSettings(const StereoCalibration& pair) {
+  if (pair.right.lens != pair.left.lens) {
+    throw InputError(
+        fmt::format("the pair has a left camera {} and a right one {}, which settings "
+                    "cannot say, expected the same model",
+                    DescribeLens(pair.left), DescribeLens(pair.right)));
+  }
+  std::vector<NamedSetting> settings;
+  const auto add = [&](std::string_view name, double value) {
+    settings.push_back({fmt::format("Camera2.{}", name), fmt::format("{}", value)});
+  };
+  add("fx", pair.right.fx);
+  add("fy", pair.right.fy);
+  add("cx", pair.right.cx);
+  add("cy", pair.right.cy);
+  for (const LensCoefficient& one : CoefficientsOf(pair.right.lens)) {
+    add(one.name, pair.right.*one.field);
+  }
+  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> left_from_right = Eigen::Matrix4d::Identity();
+  left_from_right.topRows<3>() = Inverse(pair.right_from_left).ToMatrix();
+  settings.push_back(
+      {"Stereo.T_c1_c2", fmt::format("!!opencv-matrix\n  rows: 4\n  cols: 4\n  dt: d\n  data: [{}]",
+                                     fmt::join(std::span(left_from_right.data(), 16), ", "))});
+  return settings;
+}
+
 std::vector<std::string> CameraFormatNames() { return {"hullslam", "kalibr", "colmap", "ros"}; }
 
 std::string CameraFileText(CameraFormat format, const PinholeCamera& camera,

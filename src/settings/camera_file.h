@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/frame/stereo_rectifier.h"
 
 namespace hullslam {
 
@@ -27,6 +28,9 @@ struct NamedSetting {
 };
 // All settings of a camera.
 std::vector<NamedSetting> CameraSettings(const PinholeCamera& camera);
+// The settings of the right camera of a pair, in the form of ORB-SLAM3. Throws InputError if both
+// cameras have different models of the lens.
+std::vector<NamedSetting> RightCameraSettings(const StereoCalibration& pair);
 
 // The text of a file that describes the camera. `comments` come first, one line each. `extra` are
 // only written as settings. Throws InputError for a lens that the format does not have.

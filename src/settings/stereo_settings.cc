@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "camera/named_lens.h"
+#include "camera/wide_lens.h"
 #include "settings/calibration_file.h"
 #include "settings/tool_calibration.h"
 #include "settings/yaml_map.h"
@@ -118,22 +119,18 @@ bool IsOrb3Pair(const YamlMap& file) {
 
 StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
   StereoCalibration pair{camera, camera, {}};
-  const auto number = [&](const char* name) {
-    const std::string key = std::string("Camera2.") + name;
-    return file.Has(key) ? file.Number(key) : 0.0;
-  };
   pair.right.fx = file.Number("Camera2.fx");
   pair.right.fy = file.Number("Camera2.fy");
   pair.right.cx = file.Number("Camera2.cx");
   pair.right.cy = file.Number("Camera2.cy");
-  pair.right.k1 = number("k1");
-  pair.right.k2 = number("k2");
-  pair.right.p1 = number("p1");
-  pair.right.p2 = number("p2");
-  pair.right.k3 = number("k3");
-  pair.right.k4 = number("k4");
-  pair.right.k5 = number("k5");
-  pair.right.k6 = number("k6");
+  for (const LensCoefficient& one : CoefficientsOf(camera.lens)) {
+    const std::string key = fmt::format("Camera2.{}", one.name);
+    if (file.Has(key)) {
+      pair.right.*one.field = file.Number(key);
+    } else if (one.name.front() != 'x' && one.name != "alpha" && one.name != "beta") {
+      pair.right.*one.field = 0.0;  // the shape of a wide lens is that of the left one
+    }
+  }
   pair.right_from_left =
       Inverse(file.Has(kFormerPose) ? ReadRigid3(file, kFormerPose, RigidRows::kThree)
                                     : ReadRigid3(file, kPose));

@@ -7,6 +7,7 @@
 
 #include "features/test_images.h"
 #include "support/expect_error.h"
+#include "support/turned_right.h"
 
 namespace hullslam {
 namespace {
@@ -36,6 +37,31 @@ TEST(PairCheck, FaultsAreNamed) {
   EXPECT_NE(FaultOf(Move(image, 20, 0), image).find("swapped"), std::string::npos);
   EXPECT_NE(FaultOf(image, image).find("the same image"), std::string::npos);
   EXPECT_NE(FaultOf(image, Move(image, 20, 6)).find("6.0 px lower"), std::string::npos);
+}
+
+TEST(PairCheck, RowsThatAreNotNeededAreNoFault) {
+  const cv::Mat image = MakeCornerImage();
+  PairCheck check;
+  check.Add(image, Move(image, 20, 6));
+  EXPECT_TRUE(check.FindFault().has_value());
+  EXPECT_FALSE(check.FindFault(false).has_value());
+}
+
+// A rotation about the optical axis leaves the median of the rows as it is.
+TEST(PairCheck, RowsThatAreALittleWrongAreDoubted) {
+  const cv::Mat image = MakeCornerImage();
+  const auto doubt_of = [&](const cv::Mat& right) {
+    PairCheck check;
+    check.Add(image, right);
+    EXPECT_FALSE(check.FindFault().has_value());
+    return check.FindDoubt().value_or("");
+  };
+  const cv::Mat moved = Move(image, 20, 0);
+  EXPECT_EQ(doubt_of(moved), "");
+  EXPECT_NE(doubt_of(Move(image, 20, 1)).find("wrong by 1.0 px"), std::string::npos);
+  const PinholeCamera camera{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0};
+  EXPECT_NE(doubt_of(TurnedRight(moved, camera, {0.0, 0.0, 0.01})).find("`hullslam calibrate`"),
+            std::string::npos);
 }
 
 TEST(PairCheck, FewMatchesSayNothing) {

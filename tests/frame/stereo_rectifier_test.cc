@@ -33,6 +33,10 @@ TEST(StereoRectifier, APointLiesInOneRowAndItsDisparityTellsItsDepth) {
   const StereoRectifier rectifier(pair, "test");
   const PinholeCamera& camera = rectifier.camera();
   EXPECT_FALSE(camera.IsDistorted());
+  EXPECT_FALSE(rectifier.IsIdentity());
+  const Rigid3 right_from_left =
+      Inverse(rectifier.rectified_from_right()) * rectifier.rectified_from_left();
+  EXPECT_LT(AngularDistance(right_from_left.rotation, pair.right_from_left.rotation), 1e-9);
   EXPECT_NEAR(camera.bf / camera.fx, Inverse(pair.right_from_left).translation.norm(), 1e-9);
   for (const Eigen::Vector3d& point :
        {Eigen::Vector3d(0.1, -0.2, 1.5), Eigen::Vector3d(-0.4, 0.3, 2.0)}) {
@@ -80,6 +84,7 @@ TEST(StereoRectifier, ARectifiedPairStaysAsItIs) {
   pair.right_from_left.translation = {-0.1, 0.0, 0.0};
   const StereoRectifier rectifier(pair, "test");
   EXPECT_DOUBLE_EQ(rectifier.camera().bf, 50.0);
+  EXPECT_TRUE(rectifier.IsIdentity());
   const cv::Mat image(480, 640, CV_8UC1, cv::Scalar(7));
   EXPECT_EQ(rectifier.Rectify(image, ImageSide::kLeft).data, image.data);
   EXPECT_EQ(rectifier.Rectify(image, ImageSide::kRight).data, image.data);

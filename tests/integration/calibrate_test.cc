@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "files/read_file.h"
 #include "hullslam/settings/settings.h"
+#include "settings/camera_file.h"
+#include "support/made_room.h"
 #include "support/plane_sequence.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"
 #include "support/running_program.h"
 #include "support/temporary_folder.h"
+#include "support/turned_right.h"
 
 namespace hullslam {
 namespace {
@@ -71,6 +77,80 @@ TEST_F(Calibrate, CheckOnlySaysWhatIsKnown) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("\nreadout_time "), std::string::npos) << result.output;
   EXPECT_EQ(result.output.find(" has the camera"), std::string::npos) << result.output;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
+// Pairs of the room, whose right camera may be turned.
+class CalibratePairs : public Calibrate {
+ protected:
+  static constexpr int kFrames = 24;
+
+  void WritePairs() {
+    room_.WritePairs(path_, "left", "right", kFrames, 0.12);
+    PinholeCamera camera = room_.camera();
+    camera.bf = 0.12 * camera.fx;
+    folder_.Write("pairs/camera.yaml",
+                  CameraFileText(CameraFormat::kSettings, camera, 10.0, {}, {}));
+  }
+  ProgramResult RunSlam(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {path_, "--quiet", "--overwrite", "--output",
+                                          (folder_.path() / "out").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram("hullslam run", arguments);
+  }
+  static void ExpectParts(const std::string& text, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) {
+      EXPECT_NE(text.find(part), std::string::npos) << "expected '" << part << "' in:\n" << text;
+    }
+  }
+  double Ate() const {
+    return nlohmann::json::parse(
+               ReadFile(folder_.path() / "out" / "summary.json"))["trajectory"]["ate_rmse_m"]
+        .get<double>();
+  }
+
+  MadeRoom room_;
+  std::filesystem::path path_ = folder_.path() / "pairs";
+};
+
+TEST_F(CalibratePairs, ARightPairStays) {
+  WritePairs();
+  const ProgramResult result = Run(path_, {});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  ExpectParts(result.output, {"\npitch ", "agrees, so it is kept", "no images tell its length"});
+  EXPECT_EQ(ReadFile(output_).find("Camera2"), std::string::npos) << result.output;
+}
+
+TEST_F(CalibratePairs, ATurnedRightCameraIsFoundAndItsSettingsAreUsed) {
+  WritePairs();
+  TurnImages(path_ / "right", room_.camera(), {0.009, 0.0, 0.005});
+  const ProgramResult before = RunSlam({});
+  EXPECT_EQ(before.exit_code, 2);
+  ExpectParts(before.errors, {"expected equal rows", "`hullslam calibrate`"});
+  const ProgramResult result = Run(path_, {});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  ExpectParts(result.output, {"the cameras of the pair"});
+  const std::string text = ReadFile(output_);
+  ExpectParts(text, {"Camera2.fx: ", "Stereo.T_c1_c2: ", "# roll of the right camera: 0.2"});
+  const ProgramResult after = RunSlam({"--settings", output_});
+  ASSERT_EQ(after.exit_code, 0) << after.errors;
+  EXPECT_EQ(after.errors.find("wrong by"), std::string::npos) << after.errors;
+  EXPECT_LT(Ate(), 0.01);
+  // The corrected pair is right.
+  const ProgramResult again = Run(path_, {"--check", "--settings", output_});
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  ExpectParts(again.output, {"agrees, so it is kept"});
+}
+
+TEST_F(CalibratePairs, PairsThatAreAFrameApartAreRefused) {
+  WritePairs();
+  for (int i = 1; i < kFrames; ++i) {
+    std::filesystem::rename(path_ / "right" / fmt::format("{:06}.png", i),
+                            path_ / "right" / fmt::format("{:06}.png", i - 1));
+  }
+  const ProgramResult result = Run(path_, {});
+  EXPECT_EQ(result.exit_code, 2);
+  ExpectParts(result.errors, {"do not belong together in time", "later"});
   EXPECT_FALSE(std::filesystem::exists(output_));
 }
 

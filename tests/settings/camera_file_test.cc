@@ -10,6 +10,8 @@
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 #include "settings/calibration_file.h"
+#include "settings/stereo_settings.h"
+#include "support/expect_error.h"
 #include "support/fisheye_camera.h"
 #include "support/temporary_folder.h"
 
@@ -49,6 +51,35 @@ void ExpectNear(const PinholeCamera& a, const PinholeCamera& b) {
         &PinholeCamera::p1, &PinholeCamera::p2, &PinholeCamera::xi, &PinholeCamera::alpha}) {
     EXPECT_NEAR(a.*field, b.*field, 1e-9);
   }
+}
+
+TEST(RightCameraSettings, ThePairIsReadBackWithEveryLens) {
+  for (const PinholeCamera& camera :
+       {BrownCamera(), FisheyeCamera(), DoubleSphereCamera(), ExtendedUnifiedCamera()}) {
+    StereoCalibration pair{camera, camera, {ExpSo3({0.01, -0.02, 0.03}), {-0.12, 0.001, 0.002}}};
+    pair.right.fx *= 1.01;
+    pair.right.cy += 4.0;
+    pair.right.k1 *= 0.9;
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "camera.yaml";
+    std::ofstream(file) << CameraFileText(CameraFormat::kSettings, pair.left, 30.0,
+                                          RightCameraSettings(pair), {});
+    const auto read = ReadStereoPair(file, ReadSettings(file).camera);
+    ASSERT_TRUE(read.has_value());
+    ExpectNear(read->left, pair.left);
+    ExpectNear(read->right, pair.right);
+    const Rigid3& pose = read->right_from_left;
+    EXPECT_LT(AngularDistance(pose.rotation, pair.right_from_left.rotation), 1e-9);
+    EXPECT_LT((pose.translation - pair.right_from_left.translation).norm(), 1e-9);
+  }
+}
+
+TEST(RightCameraSettings, DifferentLensesAreRefused) {
+  ExpectInputError(
+      [] {
+        RightCameraSettings({BrownCamera(), FisheyeCamera(), {}});
+      },
+      {"expected the same model"});
 }
 
 TEST(CameraFileText, SettingsAreReadBackWithEveryLens) {

@@ -44,6 +44,8 @@ struct DatasetRequest {
   DatasetChoices choices = {};
   // False for programs that only use masks and poses: then images in TUM's format may be missing.
   bool need_images = true;
+  // False for the calibration of a pair, whose points may be in other rows.
+  bool need_rows = true;
 };
 
 // A sequence and the settings of its camera.

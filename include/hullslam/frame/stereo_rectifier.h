@@ -31,6 +31,10 @@ class StereoRectifier {
   const PinholeCamera& camera() const { return camera_; }
   // The left camera as read has the same centre as the rectified one but another rotation.
   const Rigid3& rectified_from_left() const { return left_.rectified_from_read; }
+  const Rigid3& rectified_from_right() const { return right_.rectified_from_read; }
+  const StereoCalibration& calibration() const { return calibration_; }
+  // Whether the images stay as they are.
+  bool IsIdentity() const { return left_.maps.columns.empty(); }
 
   // The images as read must have the size of the cameras. Those of a pair that is rectified already
   // are returned as they are.
@@ -54,6 +58,7 @@ class StereoRectifier {
   void Turn(const Eigen::Matrix3d& rotation, Eye& eye) const;
   const Eye& EyeOf(ImageSide side) const { return side == ImageSide::kLeft ? left_ : right_; }
 
+  StereoCalibration calibration_;
   Eye left_;
   Eye right_;
   PinholeCamera camera_;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/image_input.h"
+#include "hullslam/frame/stereo_rectifier.h"
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/eigen_alignment.h"
 
@@ -62,6 +64,7 @@ struct ImageWarp {
   // The rotation of the left camera, if the step turns it; the centre is the same.
   std::optional<Rigid3> after_from_before = std::nullopt;
   cv::Size size_before = {};  // px; empty if the step keeps the size
+  std::shared_ptr<const StereoRectifier> rectifier = nullptr;  // if the step is rectification
 };
 
 // The frames of a data set of any kind. The function that opens it checks everything that needs no

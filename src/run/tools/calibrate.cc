@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,8 +67,9 @@ void AddArguments(CLI::App& app, CalibrateArguments& arguments) {
 int RunCalibrate(int argc, char** argv) {
   CLI::App app(
       "Calibrates a camera from recordings of anything, without a target: focal length, principal\n"
-      "point, lens, rolling shutter, and the disparities of depth images. Says what the recordings "
-      "do\nnot determine, and which motion would.",
+      "point, lens, rolling shutter, the disparities of depth images, and how the right camera of "
+      "a\n"
+      "pair is turned. Says what the recordings do not determine, and which motion would.",
       argv[0]);
   CalibrateArguments arguments;
   AddArguments(app, arguments);
@@ -91,11 +93,19 @@ int RunCalibrate(int argc, char** argv) {
   const auto names = CameraFormatNames();
   const auto format = std::ranges::find(names, arguments.format) - names.begin();
   const SystemOptions& options = calibrated->options;
+  std::vector<NamedSetting> extra = ImageTimeSettings(options);
+  const auto& cameras = calibrated->cameras;
+  if (cameras) {
+    std::ranges::copy(RightCameraSettings(*cameras), std::back_inserter(extra));
+  }
   WriteFileAtomically(
       arguments.output,
-      CameraFileText(static_cast<CameraFormat>(format), options.camera, options.frames_per_second,
-                     ImageTimeSettings(options), OriginOf(*calibrated)));
-  Print("{} has the camera\n", arguments.output.string());
+      CameraFileText(static_cast<CameraFormat>(format), cameras ? cameras->left : options.camera,
+                     options.frames_per_second, extra, OriginOf(*calibrated)));
+  Print("{} has the {}\n", arguments.output.string(),
+        !cameras      ? "camera"
+        : format == 0 ? "cameras of the pair"
+                      : "left camera; only --to hullslam writes the right one");
   return kDone;
 }
 
