@@ -17,9 +17,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kFarthest = 0.5;  // distance of the centres of a pair, in sizes of the true body
+constexpr double kFarthestPair =
+    0.5;  // distance of the centres of a pair, in sizes of the true body
 
-Vector3d LongestFirst(Vector3d axes) {
+Vector3d SortedByLength(Vector3d axes) {
   std::sort(axes.begin(), axes.end(), std::greater<>());
   return axes;
 }
@@ -67,7 +68,7 @@ AxisMatch MatchAxes(const Matrix3d& truth_from_mapped, std::optional<int> round_
   return best;
 }
 
-std::optional<double> Median(std::vector<double> values) {
+std::optional<double> MedianOf(std::vector<double> values) {
   if (values.empty()) {
     return std::nullopt;
   }
@@ -76,7 +77,7 @@ std::optional<double> Median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-std::optional<double> Mean(const std::vector<double>& values) {
+std::optional<double> MeanOf(const std::vector<double>& values) {
   return values.empty() ? std::nullopt
                         : std::optional(std::accumulate(values.begin(), values.end(), 0.0) /
                                         static_cast<double>(values.size()));
@@ -140,7 +141,7 @@ void PairBodies(BodyEvaluation& evaluation) {
           DistanceInSizes(truths[i], mapped[j]);
     }
   }
-  const std::vector<int> pairs = AssignMinimumCost(distances, kFarthest);
+  const std::vector<int> pairs = AssignMinimumCost(distances, kFarthestPair);
   std::vector<bool> is_paired(mapped.size(), false);
   for (size_t i = 0; i < truths.size(); ++i) {
     if (pairs[i] >= 0) {
@@ -158,7 +159,7 @@ void PairBodies(BodyEvaluation& evaluation) {
   for (size_t j = 0; j < mapped.size(); ++j) {
     if (!is_paired[j]) {
       const bool is_near = std::ranges::any_of(truths, [&](const TrueBody& truth) {
-        return DistanceInSizes(truth, mapped[j]) < kFarthest;
+        return DistanceInSizes(truth, mapped[j]) < kFarthestPair;
       });
       (is_near ? evaluation.duplicates : evaluation.false_ones).push_back(j);
     }
@@ -245,7 +246,7 @@ BodyError CompareBodies(const TrueBody& truth, const MappedBody& mapped) {
       (truth.body.world_from_body.translation - mapped.body.world_from_body.translation).norm();
   const Vector3d& half_axes = truth.body.half_axes;
   error.sorted_axes =
-      LongestFirst(mapped.body.half_axes).cwiseQuotient(LongestFirst(half_axes)).array() - 1.0;
+      SortedByLength(mapped.body.half_axes).cwiseQuotient(SortedByLength(half_axes)).array() - 1.0;
   const Matrix3d world_from_truth = truth.body.world_from_body.rotation.toRotationMatrix();
   const auto round_axes = std::ranges::count(truth.is_round, true);
   const auto first_round = std::ranges::find(truth.is_round, true) - truth.is_round.begin();
@@ -279,15 +280,15 @@ BodyErrors SummarizeBodyErrors(const std::vector<BodyError>& errors) {
     }
   }
   return {errors.size(),
-          Mean(boxes),
-          Mean(solids),
-          Median(centers),
-          {Median(sorted[0]), Median(sorted[1]), Median(sorted[2])},
-          Median(sizes),
-          Mean(sizes),
-          Median(towards),
-          Median(across),
-          Median(turns)};
+          MeanOf(boxes),
+          MeanOf(solids),
+          MedianOf(centers),
+          {MedianOf(sorted[0]), MedianOf(sorted[1]), MedianOf(sorted[2])},
+          MedianOf(sizes),
+          MeanOf(sizes),
+          MedianOf(towards),
+          MedianOf(across),
+          MedianOf(turns)};
 }
 
 BodyEvaluation EvaluateBodies(std::vector<TrueBody> truths, std::vector<MappedBody> mapped) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eval/body_overlap.h"
+#include "hullslam/geometry/alignment.h"
 #include "hullslam/geometry/sim3.h"
 #include "hullslam/util/id.h"
 #include "report/object_results.h"
@@ -103,6 +104,9 @@ struct BodyEvaluation {
   std::vector<TrueBody> truths;
   std::vector<MappedBody> mapped;
   bool have_common_class = true;
+  // How the mapped bodies came into the frame of the truth.
+  AlignmentKind alignment = AlignmentKind::kNone;
+  double scale = 1.0;  // metres per unit of the map
   // For overlaps of 0.25 and 0.5, of boxes and of solids; pairs of any class, and of one class.
   std::array<BodyScore, 2> boxes, solids, boxes_of_class, solids_of_class;
   // The errors of pairs one to one with the least sum of distances between their centres, relative

@@ -111,8 +111,10 @@ double VolumeOf(const std::vector<Face>& faces) {
   return volume;
 }
 
+// 0 if numbers are too small or too large for a ratio.
 double Ratio(double both, double a, double b) {
-  return std::clamp(both / (a + b - both), 0.0, 1.0);
+  const double either = a + b - both;
+  return either > 0.0 ? std::clamp(both / either, 0.0, 1.0) : 0.0;
 }
 
 // Bodies overlap only if the spheres around their boxes do.
