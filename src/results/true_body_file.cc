@@ -51,7 +51,7 @@ BodyKind ReadKind(const JsonNode& node) {
 // A pose whose quaternion has unit length: another length is a sign of another order of columns.
 Rigid3 ReadUnitPose(const JsonNode& node) {
   constexpr double kTolerance = 1e-2;  // of numbers with 2 decimals
-  const Rigid3 pose = PoseOf(node);
+  Rigid3 pose = PoseOf(node);
   const std::vector<double> v = node.Numbers(7);
   if (std::abs(std::hypot(std::hypot(v[3], v[4]), std::hypot(v[5], v[6])) - 1.0) > kTolerance) {
     node.Fail("tx, ty, tz, qx, qy, qz, qw with a quaternion of length 1");
@@ -204,6 +204,7 @@ Rigid3 MedianPose(const std::vector<Rigid3>& poses) {
   Eigen::Vector3d median;
   for (int i = 0; i < 3; ++i) {
     std::vector<double> values;
+    values.reserve(poses.size());
     for (const Rigid3& pose : poses) {
       values.push_back(pose.translation[i]);
     }
