@@ -23,7 +23,7 @@ from paper_tables.figures import evaluate
 from support import InputError, Stopped, call, one_line, try_read_json, write
 
 DIGITS = 16  # of a fingerprint in the name of a file
-RESULT_VERSION = 1  # of the files that runs leave; a new one repeats all runs
+RESULT_VERSION = 2  # of the files that runs leave; a new one repeats all runs
 PLAN, LOG, ERROR = "plan.json", "log.txt", "error.txt"
 STEP = 0.5  # s, between two looks at what is done
 LINE_EVERY = 20.0  # s, between two lines of progress that go to a file

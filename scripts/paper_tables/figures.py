@@ -40,7 +40,14 @@ FIGURES = {
     "doubles": Figure("true objects that are mapped more than once", same("doubles", "doubles"), 1.0, 1,
                       True),
     "centre": Figure("error of the centres, % of the size", same("centre, %", "centre"), 1e2, 1, True),
+    "ap25": Figure("average precision at a 3D IoU of 0.25", same("AP25", "ap25"), 1.0, 3, False),
+    "ar25": Figure("recall at a 3D IoU of 0.25", same("AR25", "ar25"), 1.0, 3, False),
+    "centre_mm": Figure("median error of the centres, mm", same("centre, mm", "centre_mm"), 1e3, 1, True),
+    "axes": Figure("median error of the half axes, %", same("axes, %", "axes"), 1e2, 1, True),
 }
+
+OF_BODIES = {"ap25": ("boxes", "25", "ap"), "ar25": ("boxes", "25", "ar"),
+             "centre_mm": ("errors", "center_m"), "axes": ("errors", "axes_median")}
 
 
 def of_true_objects(report):
@@ -87,4 +94,6 @@ def evaluate(program, run, folder, summary):
     if run["objects"] is not None:
         figures |= of_true_objects(ask(program, "evaluate", "objects", out, "--groundtruth",
                                        run["objects"], "--json"))
+        report = ask(program, "evaluate", "objects", out, "--truth", run["objects"], "--json")
+        figures |= {name: value_at(report, "truth", *keys) for name, keys in OF_BODIES.items()}
     return figures

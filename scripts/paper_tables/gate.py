@@ -72,7 +72,7 @@ MEASURES = {
                      factor=1e2, digits=2),
 }
 KEPT = ("ate_se3", "ate_sim3", "keyframes_ate_sim3", "lost", "frames", "keyframes", "loops",
-        "objects", "siou", "found", "doubles")  # of the figures of a table run
+        "objects", "siou", "found", "doubles", "ap25", "ar25", "centre_mm", "axes")  # of a table run
 
 
 # ---- one run

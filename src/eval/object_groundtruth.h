@@ -25,12 +25,14 @@ enum class TrueObjectStatus { kUnchanged, kMoved, kNew };
 struct TrueObject {
   uint32_t id = 0;  // the same in all visits of a scene
   std::string label;
-  std::string shape;  // ellipsoid, box, superquadric or compound
+  std::string shape;      // ellipsoid, box, cylinder, superquadric or compound
+  bool is_round = false;  // about its z axis
   bool is_dynamic = false;
   Rigid3 world_from_object;  // at the start of the sequence if it moves
   Eigen::Vector3d half_extents = Eigen::Vector3d::Ones();  // m, tight, along the axes of the object
-  std::optional<TrueObjectStatus> status;                  // only in a rearranged scene
-  std::optional<Rigid3> former_world_from_object;          // pose before; only of a moved object
+  std::optional<uint32_t> masks;           // of the sequence that show it; absent in older files
+  std::optional<TrueObjectStatus> status;  // only in a rearranged scene
+  std::optional<Rigid3> former_world_from_object;  // pose before; only of a moved object
 
   // Mean of the three full extents, m. Relative errors are divided by this.
   double Size() const { return 2.0 * half_extents.mean(); }

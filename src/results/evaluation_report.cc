@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <numbers>
 #include <string>
 
 #include "eval/object_metrics.h"
@@ -116,6 +118,87 @@ Json ToJson(const TruthEvaluation& evaluation) {
           {"each", each}};
 }
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+Json ToJson(const BodyScore& score) {
+  return {{"least", score.least},
+          {"truths", score.truths},
+          {"predictions", score.predictions},
+          {"right", score.right},
+          {"precision", OrNull(score.precision)},
+          {"ar", OrNull(score.recall)},
+          {"ap", OrNull(score.average_precision)}};
+}
+
+Json ToJson(const std::array<BodyScore, 2>& scores) {
+  return {{"25", ToJson(scores[0])}, {"50", ToJson(scores[1])}};
+}
+
+Json ToJson(const BodyErrors& errors) {
+  return {{"count", errors.count},
+          {"box_iou_mean", OrNull(errors.box_overlap)},
+          {"solid_iou_mean", OrNull(errors.solid_overlap)},
+          {"center_m", OrNull(errors.center_m)},
+          {"longest", OrNull(errors.sorted_axes[0])},
+          {"middle", OrNull(errors.sorted_axes[1])},
+          {"shortest", OrNull(errors.sorted_axes[2])},
+          {"axes_median", OrNull(errors.axes_median)},
+          {"axes_mean", OrNull(errors.axes_mean)},
+          {"towards", OrNull(errors.towards)},
+          {"across", OrNull(errors.across)},
+          {"turn_rad", OrNull(errors.turn)}};
+}
+
+Json ToJson(const BodyError& error, const BodyEvaluation& bodies) {
+  const TrueBody& truth = bodies.truths[error.truth];
+  return {{"id", truth.id},
+          {"class", truth.label},
+          {"shape", truth.shape},
+          {"object", bodies.mapped[error.mapped].id.value},
+          {"views", bodies.mapped[error.mapped].views},
+          {"box_iou", error.box_overlap},
+          {"solid_iou", error.solid_overlap},
+          {"center_m", error.center_m},
+          {"sorted_axes", ToJson(error.sorted_axes)},
+          {"along_axes", ToJson(error.along_axes)},
+          {"sight", ToJson(error.sight)},
+          {"turn_rad", OrNull(error.turn)}};
+}
+
+Json ToJson(const BodyEvaluation& bodies) {
+  Json each = Json::array();
+  for (const BodyError& error : bodies.errors) {
+    each.push_back(ToJson(error, bodies));
+  }
+  Json shapes = Json::object();
+  for (const auto& [shape, errors] : ErrorsByShape(bodies)) {
+    shapes[shape] = ToJson(errors);
+  }
+  const auto objects = [&](const std::vector<size_t>& indices) {
+    Json ids = Json::array();
+    for (const size_t index : indices) {
+      ids.push_back(bodies.mapped[index].id.value);
+    }
+    return ids;
+  };
+  Json missed = Json::array();
+  for (const size_t index : bodies.missed) {
+    missed.push_back(bodies.truths[index].id);
+  }
+  return {{"alignment", ToString(bodies.alignment)},
+          {"scale", bodies.scale},
+          {"boxes", ToJson(bodies.boxes)},
+          {"solids", ToJson(bodies.solids)},
+          {"boxes_of_class", ToJson(bodies.boxes_of_class)},
+          {"solids_of_class", ToJson(bodies.solids_of_class)},
+          {"errors", ToJson(SummarizeBodyErrors(bodies.errors))},
+          {"shapes", shapes},
+          {"missed", missed},
+          {"duplicates", objects(bodies.duplicates)},
+          {"false", objects(bodies.false_ones)},
+          {"each", each}};
+}
+
 std::string DescribeObject(const ObjectResult& object) {
   const ObjectFit& fit = object.fit;
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
@@ -219,6 +302,59 @@ std::string DescribeTruth(const TruthEvaluation& evaluation) {
   return text;
 }
 
+std::string DescribeScores(const char* name, const std::array<BodyScore, 2>& scores) {
+  std::string text = fmt::format("{:<22}", name);
+  for (const BodyScore& score : scores) {
+    text += fmt::format("  {:>5} {:>5} {:>9}", FormatFigure(score.average_precision, 3),
+                        FormatFigure(score.recall, 3), FormatFigure(score.precision, 3));
+  }
+  return text + '\n';
+}
+
+// The value as a multiple of the unit.
+std::optional<double> In(double unit, const std::optional<double>& value) {
+  return value ? std::optional(*value / unit) : std::nullopt;
+}
+
+std::string DescribeErrors(const std::string& shape, const BodyErrors& errors) {
+  const auto percent = [](const std::optional<double>& value) {
+    return FormatFigure(In(0.01, value), 1);
+  };
+  return fmt::format(
+      "{:<12} {:>5}  {:>5} {:>5}  {:>6}  {:>6} {:>6} {:>6}  {:>6} {:>6}  {:>7} {:>6}  {:>5}\n",
+      shape, errors.count, FormatFigure(errors.box_overlap, 3),
+      FormatFigure(errors.solid_overlap, 3), FormatFigure(In(1e-3, errors.center_m), 1),
+      percent(errors.sorted_axes[0]), percent(errors.sorted_axes[1]),
+      percent(errors.sorted_axes[2]), percent(errors.axes_median), percent(errors.axes_mean),
+      percent(errors.towards), percent(errors.across),
+      FormatFigure(In(1.0 / kDegrees, errors.turn), 1));
+}
+
+std::string DescribeBodies(const BodyEvaluation& bodies) {
+  std::string text = fmt::format(
+      "\nbodies of the truth, after {} alignment with scale {:.6f}\n{:<22}  {:>5} {:>5} {:>9}  "
+      "{:>5} "
+      "{:>5} {:>9}\n",
+      ToString(bodies.alignment), bodies.scale, "3D IoU", "AP25", "AR25", "precision", "AP50",
+      "AR50", "precision");
+  text += DescribeScores("boxes", bodies.boxes) +
+          DescribeScores("boxes of one class", bodies.boxes_of_class) +
+          DescribeScores("solids", bodies.solids) +
+          DescribeScores("solids of one class", bodies.solids_of_class);
+  text += fmt::format(
+      "{} of {} bodies count: {} mapped, {} missed; {} duplicates, {} objects match none\n\n",
+      bodies.boxes[0].truths, bodies.truths.size(), bodies.errors.size(), bodies.missed.size(),
+      bodies.duplicates.size(), bodies.false_ones.size());
+  text += fmt::format(
+      "{:<12} {:>5}  {:>5} {:>5}  {:>6}  {:>6} {:>6} {:>6}  {:>6} {:>6}  {:>7} {:>6}  {:>5}\n",
+      "shape", "pairs", "box", "solid", "mm", "long %", "mid %", "short%", "med. %", "mean %",
+      "towards", "across", "deg");
+  for (const auto& [shape, errors] : ErrorsByShape(bodies)) {
+    text += DescribeErrors(shape, errors);
+  }
+  return text + DescribeErrors("all", SummarizeBodyErrors(bodies.errors));
+}
+
 double MaxDifference(const AteOptions& options) {
   return options.max_difference.value_or(DefaultMaxDifference(options.pairing));
 }
@@ -249,8 +385,8 @@ std::string TrajectoryErrorsJson(const TrajectoryErrors& errors) {
   return json.dump(2);
 }
 
-std::string EvaluationJson(const ObjectResults& report,
-                           const std::optional<TruthEvaluation>& truth) {
+std::string EvaluationJson(const ObjectResults& report, const std::optional<TruthEvaluation>& truth,
+                           const std::optional<BodyEvaluation>& bodies) {
   const MapFit fit = SummarizeFits(report);
   Json each = Json::array();
   for (const ObjectResult& object : report.objects) {
@@ -265,7 +401,8 @@ std::string EvaluationJson(const ObjectResults& report,
                      {"lines", fit.mean.lines},
                      {"candidates", report.candidates},
                      {"each", each},
-                     {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)}};
+                     {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)},
+                     {"truth", bodies ? ToJson(*bodies) : Json(nullptr)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -294,8 +431,10 @@ std::string TrajectoryErrorsText(const TrajectoryErrors& errors) {
 }
 
 std::string EvaluationText(const ObjectResults& report, AlignmentKind alignment,
-                           const std::optional<TruthEvaluation>& truth) {
-  return DescribeFits(report, alignment) + (truth ? DescribeTruth(*truth) : std::string());
+                           const std::optional<TruthEvaluation>& truth,
+                           const std::optional<BodyEvaluation>& bodies) {
+  return DescribeFits(report, alignment) + (truth ? DescribeTruth(*truth) : std::string()) +
+         (bodies ? DescribeBodies(*bodies) : std::string());
 }
 
 }  // namespace hullslam

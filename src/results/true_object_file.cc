@@ -15,6 +15,10 @@ TrueObject ReadTrueObject(const JsonNode& node) {
   object.id = node.At("id").Count();
   object.label = node.At("class").Text();
   object.shape = node.At("shape").Text();
+  object.is_round = node.Has("round") && node.At("round").Flag();
+  if (node.Has("masks")) {
+    object.masks = node.At("masks").Count();
+  }
   object.is_dynamic = node.At("dynamic").Flag();
   object.world_from_object = PoseOf(node.At("world_from_object"));
   object.half_extents = node.At("half_extents").Lengths();

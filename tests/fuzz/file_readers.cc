@@ -32,6 +32,7 @@
 #include "results/ply_file.h"
 #include "results/pose_file.h"
 #include "results/scene_file.h"
+#include "results/true_body_file.h"
 #include "results/true_object_file.h"
 #include "segmentation/candidate.h"
 #include "segmentation/class_names.h"
@@ -137,6 +138,24 @@ void FuzzTrueObjects(std::string_view bytes) {
     for (const TrueObject& object : scene.objects) {
       Expect(std::isfinite(object.Size()) && object.Size() > 0.0, "the size of an object");
       Expect(object.status.has_value() == scene.is_rearranged, "the status of an object");
+    }
+  });
+}
+
+// Also the scene_gt.json of a scene of BOP.
+void FuzzTrueBodies(std::string_view bytes) {
+  static const InputFolder folder("scene_gt.json", "scene_camera.json", "models_info.json");
+  folder.Write(bytes);
+  Try([] {
+    const std::vector<TrueBody> truths = ReadTrueBodies(folder.path() / "scene_gt.json");
+    Expect(!truths.empty(), "no bodies");
+    const Body& first = truths.front().body;
+    for (const TrueBody& truth : truths) {
+      Expect(truth.body.half_axes.minCoeff() > 0.0 && truth.body.half_axes.allFinite(),
+             "no length");
+      const double overlap = BoxOverlap(first, truth.body);
+      const double solid = SolidOverlap(first, truth.body);
+      Expect(overlap >= 0.0 && overlap <= 1.0 && solid >= 0.0 && solid <= 1.0, "no share");
     }
   });
 }
@@ -336,6 +355,7 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"objects", FuzzObjects},
                                                        {"ply_points", FuzzPlyPoints},
                                                        {"true_objects", FuzzTrueObjects},
+                                                       {"true_bodies", FuzzTrueBodies},
                                                        {"summary", FuzzSummary},
                                                        {"scene", FuzzScene},
                                                        {"npy", FuzzNpy},

@@ -50,17 +50,20 @@ class MemoryFile {
   int descriptor_;
 };
 
-// A temporary folder in which the file `name` is the input. `other` is a file of the folder `given`
-// that is there too.
+// A temporary folder in which the file `name` is the input. The others are files of the folder
+// `given` that are there too.
 class InputFolder {
  public:
-  explicit InputFolder(const std::string& name, const std::string& other = "") {
+  explicit InputFolder(const std::string& name, const std::string& other = "",
+                       const std::string& third = "") {
     std::string folder = fs::temp_directory_path() / "hullslam_fuzz_XXXXXX";
     Expect(::mkdtemp(folder.data()) != nullptr, "mkdtemp");
     path_ = folder;
     fs::create_symlink(file_.path(), path_ / name);
-    if (!other.empty()) {
-      fs::copy_file(fs::path(HULLSLAM_FUZZ_FOLDER) / "given" / other, path_ / other);
+    for (const std::string& given : {other, third}) {
+      if (!given.empty()) {
+        fs::copy_file(fs::path(HULLSLAM_FUZZ_FOLDER) / "given" / given, path_ / given);
+      }
     }
   }
   ~InputFolder() {

@@ -2,13 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "files/read_file.h"
 #include "files/staged_file.h"
 #include "hullslam/results/trajectory_file.h"
 #include "results/object_file.h"
+#include "results/scene_file.h"
 #include "results/summary.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -315,7 +318,108 @@ TEST_F(EvaluateObjects, ARunWithoutObjectsHasNoMeans) {
       << result.output;
 }
 
+// The sphere of 0.1 m is mapped 1 % too large, and its tight box with it.
+TEST_F(EvaluateObjects, MeasuresTrueBodies) {
+  const ProgramResult result =
+      RunProgram("hullslam evaluate", {"objects", run_, "--truth", truth_file_, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto truth = nlohmann::json::parse(result.output)["truth"];
+  EXPECT_EQ(truth["alignment"], "se3");
+  EXPECT_EQ(truth["boxes"]["25"]["truths"], 2);
+  EXPECT_EQ(truth["boxes"]["50"]["ar"], 0.5);
+  EXPECT_EQ(truth["boxes_of_class"]["50"]["ap"], 0.5);
+  EXPECT_EQ(truth["solids"]["50"]["precision"], 1.0);
+  EXPECT_EQ(truth["missed"], nlohmann::json({1}));
+  ASSERT_EQ(truth["each"].size(), 1U);
+  EXPECT_EQ(truth["each"][0]["object"], 3);
+  EXPECT_NEAR(truth["each"][0]["solid_iou"].get<double>(), 1.0 / std::pow(1.01, 3), 0.005);
+  EXPECT_NEAR(truth["shapes"]["ellipsoid"]["longest"].get<double>(), 0.01, 1e-6);
+  EXPECT_LT(truth["errors"]["center_m"].get<double>(), 1e-6);
+  EXPECT_TRUE(truth["errors"]["turn_rad"].is_null()) << "a sphere";
+}
+
+TEST_F(EvaluateObjects, TrueBodiesOfAMonocularRunAreMeasuredInMetres) {
+  WriteMonocularRun(2.5);
+  const std::string file = folder_.path() / "errors.json";
+  const ProgramResult result =
+      RunProgram("hullslam evaluate", {"objects", run_, "--truth", truth_file_, "--json", file});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto truth = nlohmann::json::parse(ReadFile(file))["truth"];
+  EXPECT_NEAR(truth["scale"].get<double>(), 2.5, 1e-6);
+  EXPECT_NEAR(truth["errors"]["axes_mean"].get<double>(), 0.01, 1e-6);
+  for (const char* const part :
+       {"after sim3 alignment with scale 2.5", "AP25", "boxes of one class",
+        "2 of 2 bodies count: 1 mapped, 1 missed", "ellipsoid        1"}) {
+    EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
+  }
+}
+
+// The map is in another frame than the truth, so nothing is found there. Then it is aligned by
+// another file of the trajectory.
+TEST_F(EvaluateObjects, TheTrajectoryOfTrueBodiesCanBeGiven) {
+  const auto found = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"objects", run_, "--truth", truth_file_, "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = RunProgram("hullslam evaluate", arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return nlohmann::json::parse(result.output)["truth"]["boxes"]["25"]["right"];
+  };
+  EXPECT_EQ(found({"--given-poses"}), 0);
+  EXPECT_EQ(found({"--align", "none"}), 0);
+  const std::string moved = folder_.path() / "poses.txt";
+  std::filesystem::rename(folder_.path() / "groundtruth.txt", moved);
+  EXPECT_EQ(found({"--groundtruth", moved}), 1);
+  EXPECT_EQ(found({"--groundtruth", moved, "--min-masks", "0"}), 1);
+  ExpectRefusal({"objects", run_, "--truth", truth_file_, "--align", "se3"}, "summary.json");
+}
+
+TEST_F(EvaluateObjects, TheUprightBoxesCanBeMeasured) {
+  Scene scene;
+  SceneObject object;
+  object.id = ObjectId(3);
+  object.label = "cup";
+  object.ellipsoid = report_.objects[0].ellipsoid;
+  object.shares = {{"cup", 1.0}};
+  object.box = UprightBox{object.ellipsoid.world_from_object, {0.1, 0.1, 0.2}};
+  scene.objects = {object};
+  folder_.Write("run/scene.json", FormatScene(scene));
+  const ProgramResult result = RunProgram(
+      "hullslam evaluate", {"objects", run_, "--truth", truth_file_, "--upright", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto each = nlohmann::json::parse(result.output)["truth"]["each"];
+  EXPECT_NEAR(each[0]["sorted_axes"][0].get<double>(), 1.0, 1e-6);
+  EXPECT_NEAR(each[0]["sorted_axes"][1].get<double>(), 0.0, 1e-6);
+}
+
+TEST_F(EvaluateObjects, TrueBodiesThatMatchNothingAreSaid) {
+  const std::string other =
+      folder_.Write("other.json", R"({"objects": [{"id": 1, "class": "Cup", "kind": "box",
+          "world_from_object": [0, 0, 2, 0, 0, 0, 1], "half_axes": [0.1, 0.1, 0.1]}]})");
+  ProgramResult result = RunProgram("hullslam evaluate",
+                                    {"objects", run_, "--truth", other, "--given-poses", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("other.json: has no class of a mapped object"), std::string::npos);
+  auto truth = nlohmann::json::parse(result.output)["truth"];
+  EXPECT_EQ(truth["boxes"]["50"]["ar"], 1.0);
+  EXPECT_EQ(truth["boxes_of_class"]["50"]["ar"], 0.0);
+  report_.objects.clear();
+  WriteRun();
+  result = RunProgram("hullslam evaluate",
+                      {"objects", run_, "--truth", other, "--given-poses", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("has no mapped objects"), std::string::npos) << result.errors;
+  truth = nlohmann::json::parse(result.output)["truth"];
+  EXPECT_EQ(truth["boxes"]["25"]["ap"], 0.0);
+  EXPECT_TRUE(truth["boxes"]["25"]["precision"].is_null());
+}
+
 TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
+  ExpectRefusal({"objects", run_, "--align", "none"}, "need --truth FILE");
+  ExpectRefusal({"objects", run_, "--truth", folder_.path() / "none.json"}, "none.json");
+  ExpectRefusal({"objects", run_, "--truth", folder_.Write("empty.json", R"({"objects": []})")},
+                "empty.json: has no object");
+  ExpectRefusal({"objects", run_, "--truth", truth_file_, "--groundtruth", truth_file_},
+                "groundtruth_objects.json");
   ExpectRefusal({"objects"}, "RUN_DIR");
   ExpectRefusal({"objects", folder_.path() / "none"}, "objects.json: No such file");
   ExpectRefusal({"objects", run_, "--min-masks", "-1"}, "--min-masks");

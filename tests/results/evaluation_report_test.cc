@@ -33,6 +33,26 @@ TEST(TrajectoryErrorsText, HasTheErrorsOfTheJson) {
   EXPECT_TRUE(json.is_object());
 }
 
+TEST(EvaluationText, HasTheErrorsOfTrueBodies) {
+  TrueBody truth;
+  truth.shape = "box";
+  truth.body = {BodyKind::kBox, {}, {0.3, 0.2, 0.1}};
+  MappedBody mapped;
+  mapped.body = {BodyKind::kBox, {}, {0.33, 0.2, 0.1}};
+  mapped.body.world_from_body.translation.z() = 0.02;
+  const BodyEvaluation bodies = EvaluateBodies({truth}, {mapped});
+  const std::string text = EvaluationText({}, AlignmentKind::kNone, std::nullopt, bodies);
+  EXPECT_TRUE(Says(text, "boxes                   1.000 1.000     1.000  1.000 1.000     1.000"))
+      << text;
+  EXPECT_TRUE(
+      Says(text, "box              1  0.750 0.750    20.0    10.0    0.0    0.0     0.0    3.3"))
+      << text;
+  const auto json = nlohmann::json::parse(EvaluationJson({}, std::nullopt, bodies))["truth"];
+  EXPECT_NEAR(json["shapes"]["box"]["longest"].get<double>(), 0.1, 1e-12);
+  EXPECT_EQ(json["boxes"]["50"]["ap"], 1.0);
+  EXPECT_EQ(json["each"].size(), 1U);
+}
+
 TEST(EvaluationText, ExplainsTheUnitOfAMapWithoutMetres) {
   EXPECT_TRUE(Says(EvaluationText({}, AlignmentKind::kSe3, std::nullopt),
                    "0 mapped, 0 not mapped; 0 observations"));

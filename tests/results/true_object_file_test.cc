@@ -71,6 +71,8 @@ TEST(TrueObjectFile, BrokenValuesAreReportedWithTheirPath) {
   expect("class", 3, "a string");
   expect("shape", nullptr, "a string");
   expect("dynamic", 1, "true or false");
+  expect("round", 1, "true or false");
+  expect("masks", -1, "an integer");
   expect("world_from_object", {1, 2, 3}, "qx");
   expect("half_extents", {1, 2, 0}, "> 0");
   expect("half_extents", {1, 2, 1e155}, "up to 1e+08 m");

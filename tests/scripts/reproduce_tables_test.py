@@ -41,6 +41,7 @@ class RunsTest(TablesTest):
         self.assertAlmostEqual(figures["ate_sim3"], 0.0198)
         self.assertAlmostEqual(figures["found"], 6 / 8)
         self.assertAlmostEqual(figures["centre"], 0.2)
+        self.assertEqual([figures[key] for key in ("ap25", "ar25", "centre_mm", "axes")], [0.6, 0.7, 0.02, 0.1])
         self.assertAlmostEqual(figures["mtd"], 1e-3)
         # One unit of length of a monocular run has two metres.
         self.assertAlmostEqual(runs["desk/mono/bad/seed-1"]["figures"]["mtd"], 4e-3)

@@ -32,6 +32,7 @@ std::string ShapeName(ShapeKind kind) {
     case ShapeKind::kSuperquadric:
       return "superquadric";
     case ShapeKind::kCylinder:
+      return "cylinder";
     case ShapeKind::kTorus:
     case ShapeKind::kRevolved:
       return "compound";

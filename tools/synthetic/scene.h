@@ -38,7 +38,7 @@ struct SceneObject {
   int id = 0;              // the same before and after a rearrangement
   std::string class_name;  // name of COCO; empty without a class
   int class_id = 0;        // id of COCO, counted from 0, or kNoClass
-  std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
+  std::string shape;       // "ellipsoid", "box", "cylinder", "superquadric" or "compound"
   std::vector<Part> parts;
   Eigen::Vector3d half_extents =
       Eigen::Vector3d::Zero();  // tight, in the frame of the object, metres

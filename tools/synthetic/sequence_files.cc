@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,23 @@ std::string CameraSettings(const SequencePlan& plan) {
   return text;
 }
 
+// Whether a part looks the same when its owner is turned about the z axis through its centre.
+bool IsRound(const Part& part) {
+  constexpr double kTolerance = 1e-6;
+  const Shape& shape = part.shape;
+  const bool can_be_round = shape.kind == ShapeKind::kCylinder ||
+                            shape.kind == ShapeKind::kRevolved ||
+                            shape.kind == ShapeKind::kEllipsoid ||
+                            (shape.kind == ShapeKind::kSuperquadric && shape.east == 1.0);
+  const Eigen::Vector3d axis = part.owner_from_part.rotation * Eigen::Vector3d::UnitZ();
+  return can_be_round && shape.half.x() == shape.half.y() && axis.head<2>().norm() < kTolerance &&
+         part.owner_from_part.translation.head<2>().norm() < kTolerance;
+}
+
+bool IsRound(const SceneObject& object) {
+  return std::ranges::all_of(object.parts, [](const Part& part) { return IsRound(part); });
+}
+
 nlohmann::ordered_json PoseJson(const Rigid3& pose) {
   const Eigen::Vector3d& t = pose.translation;
   const Eigen::Quaterniond& q = pose.rotation;
@@ -110,6 +128,7 @@ nlohmann::ordered_json ObjectJson(const SceneObject& object) {
           {"class", object.class_name},
           {"class_id", object.class_id},
           {"shape", object.shape},
+          {"round", IsRound(object)},
           {"dynamic", object.IsDynamic()},
           {"world_from_object", PoseJson(object.world_from_object)},
           {"half_extents",
@@ -152,7 +171,7 @@ void AddRelations(const Scene& scene, nlohmann::ordered_json& file) {
   }
 }
 
-std::string ObjectsJson(const SequencePlan& plan) {
+std::string ObjectsJson(const SequencePlan& plan, const std::vector<uint32_t>& masks) {
   nlohmann::ordered_json file = {{"generator", "make_synthetic"},
                                  {"scene", plan.name},
                                  {"seed", plan.seed},
@@ -161,8 +180,12 @@ std::string ObjectsJson(const SequencePlan& plan) {
     file["rearranged"] = *plan.rearranged;
   }
   file["objects"] = nlohmann::ordered_json::array();
-  for (const SceneObject& object : plan.scene.objects) {
+  for (size_t i = 0; i < plan.scene.objects.size(); ++i) {
+    const SceneObject& object = plan.scene.objects[i];
     nlohmann::ordered_json entry = ObjectJson(object);
+    if (!masks.empty()) {
+      entry["masks"] = masks.at(i);
+    }
     if (plan.rearranged) {
       AddStatus(object, entry);
     }
@@ -194,13 +217,14 @@ void WriteNewFile(const fs::path& path, const std::string& content) {
   }
 }
 
-void WriteSequenceFiles(const fs::path& folder, const SequencePlan& plan) {
+void WriteSequenceFiles(const fs::path& folder, const SequencePlan& plan,
+                        const std::vector<uint32_t>& masks) {
   const fs::path tum = folder / plan.layout.TumFolder();
   WriteNewFile(tum / "rgb.txt", FrameList(plan, "rgb"));
   WriteNewFile(tum / "depth.txt", FrameList(plan, "depth"));
   WriteNewFile(tum / "groundtruth.txt", GroundTruth(plan));
   WriteNewFile(tum / "camera.yaml", CameraSettings(plan));
-  WriteNewFile(tum / "groundtruth_objects.json", ObjectsJson(plan));
+  WriteNewFile(tum / "groundtruth_objects.json", ObjectsJson(plan, masks));
   if (plan.layout.form == DatasetForm::kIcl) {
     WriteNewFile(folder / "associations.txt", IclAssociations(plan.frames));
     WriteNewFile(folder / (plan.name + ".gt.freiburg"), IclGroundTruth(plan));

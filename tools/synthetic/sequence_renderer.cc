@@ -28,12 +28,18 @@ namespace fs = std::filesystem;
 
 constexpr int kMinMaskArea = 100;  // px
 
-std::string MaskText(const Scene& scene, const cv::Mat& instance) {
+using MaskCounts = std::vector<std::atomic<uint32_t>>;  // of each object of a scene
+
+// Adds the masks to `counts`, if there are counts.
+std::string MaskText(const Scene& scene, const cv::Mat& instance, MaskCounts* counts) {
   std::string text;
   for (const InstanceOutline& outline : FindOutlines(instance, kMinMaskArea)) {
     const SceneObject& object = scene.objects[static_cast<size_t>(outline.object)];
     if (!object.HasClass()) {
       continue;
+    }
+    if (counts != nullptr) {
+      ++(*counts)[static_cast<size_t>(outline.object)];
     }
     text += std::to_string(object.class_id);
     for (const Eigen::Vector2d& vertex : outline.vertices) {
@@ -78,10 +84,12 @@ void WriteRight(const SequencePlan& plan, const Eye& eye, int frame, const fs::p
   const std::string stem = plan.layout.Stem(frame);
   WriteNewFile(folder / "right" / (stem + ".png"),
                EncodePng(eye.sensor.Colour(rendered, static_cast<uint32_t>(frame))));
-  WriteNewFile(folder / "masks_right" / (stem + ".txt"), MaskText(plan.scene, rendered.instance));
+  WriteNewFile(folder / "masks_right" / (stem + ".txt"),
+               MaskText(plan.scene, rendered.instance, nullptr));
 }
 
-void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder) {
+void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::path& folder,
+                MaskCounts& counts) {
   const RenderedFrame rendered = RenderBlurred(plan, eye, frame);
   const Sensor& sensor = eye.sensor;
   const std::string stem = plan.layout.Stem(frame);
@@ -89,7 +97,7 @@ void WriteFrame(const SequencePlan& plan, const Eye& eye, int frame, const fs::p
   WriteNewFile(folder / "rgb" / (stem + ".png"), EncodePng(sensor.Colour(rendered, number)));
   WriteNewFile(folder / "depth" / (stem + ".png"), EncodePng(sensor.Depth(rendered, number)));
   WriteNewFile(folder / plan.layout.TumFolder() / "masks" / (stem + ".txt"),
-               MaskText(plan.scene, rendered.instance));
+               MaskText(plan.scene, rendered.instance, &counts));
 }
 
 // Calls `write` for all frames from `threads` threads, one call per frame. Returns false if
@@ -153,8 +161,9 @@ bool RenderSequence(const fs::path& folder, const SequencePlan& plan, int thread
   }
   const int workers =
       threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  MaskCounts counts(plan.scene.objects.size());
   const auto write = [&](int frame) {
-    WriteFrame(plan, {plan.scene, renderer, sensor}, frame, folder);
+    WriteFrame(plan, {plan.scene, renderer, sensor}, frame, folder, counts);
     if (is_stereo) {
       WriteRight(plan, {right_scene, *right_renderer, right_sensor}, frame, folder);
     }
@@ -162,7 +171,7 @@ bool RenderSequence(const fs::path& folder, const SequencePlan& plan, int thread
   if (!ForEachFrame(plan.frames, workers, write, progress)) {
     return false;
   }
-  WriteSequenceFiles(folder, plan);
+  WriteSequenceFiles(folder, plan, std::vector<uint32_t>(counts.begin(), counts.end()));
   return true;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -8,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "eval/body_metrics.h"
 #include "eval/object_metrics.h"
 #include "files/plausible.h"
+#include "files/staged_file.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/results/trajectory_file.h"
@@ -19,6 +22,8 @@
 #include "results/finished_run.h"
 #include "results/object_file.h"
 #include "results/pose_file.h"
+#include "results/scene_file.h"
+#include "results/true_body_file.h"
 #include "results/true_object_file.h"
 #include "run/command_line.h"
 #include "run/program.h"
@@ -26,6 +31,12 @@
 
 namespace hullslam {
 namespace {
+
+const std::map<std::string, AlignmentKind>& Alignments() {
+  static const std::map<std::string, AlignmentKind> alignments = {
+      {"none", AlignmentKind::kNone}, {"se3", AlignmentKind::kSe3}, {"sim3", AlignmentKind::kSim3}};
+  return alignments;
+}
 
 struct TrajectoryArguments {
   std::string groundtruth;
@@ -36,11 +47,15 @@ struct TrajectoryArguments {
 
 struct ObjectsArguments {
   std::filesystem::path run;
-  std::filesystem::path groundtruth;  // groundtruth_objects.json; empty: none
+  // groundtruth_objects.json; with `truth`, a trajectory. Empty: none, or the usual trajectory.
+  std::filesystem::path groundtruth;
+  std::filesystem::path truth;  // true bodies; empty: none
   // The alignment of the run with the ground truth; absent: that of summary.json.
   std::optional<AlignmentKind> alignment;
   size_t min_masks = 30;  // least number of masks with which a true object counts as visible
+  bool upright = false;   // compares the boxes of scene.json
   bool json = false;
+  std::filesystem::path json_file;  // empty: print the JSON
 };
 
 // A file of KITTI has no stamps: its poses are those of the other file, one for one.
@@ -59,8 +74,6 @@ std::pair<Trajectory, Trajectory> ReadBoth(const TrajectoryArguments& arguments)
 }
 
 CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
-  const std::map<std::string, AlignmentKind> alignments = {
-      {"none", AlignmentKind::kNone}, {"se3", AlignmentKind::kSe3}, {"sim3", AlignmentKind::kSim3}};
   const std::map<std::string, PairingRule> tools = {{"tum", PairingRule::kTum},
                                                     {"evo", PairingRule::kEvo}};
   CLI::App* const command = app.add_subcommand(
@@ -70,7 +83,7 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
   command
       ->add_option("--align", arguments.ate.alignment,
                    "alignment with the true trajectory: none, se3 (default) or sim3")
-      ->transform(CLI::CheckedTransformer(alignments).description(""));
+      ->transform(CLI::CheckedTransformer(Alignments()).description(""));
   command
       ->add_option("--tool", arguments.ate.pairing,
                    "tool whose rule pairs the poses: tum (default) or evo")
@@ -102,9 +115,8 @@ void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
 // The alignment with the ground truth. Without a summary.json the unit of length is the metre.
 AlignmentKind FindAlignment(const std::filesystem::path& run) {
   std::error_code error;
-  const bool is_scaled =
-      std::filesystem::exists(run / "summary.json", error) && !OpenFinishedRun(run).IsMetric();
-  return is_scaled ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+  return std::filesystem::exists(run / "summary.json", error) ? OpenFinishedRun(run).alignment
+                                                              : AlignmentKind::kSe3;
 }
 
 void CheckHasObjects(const std::filesystem::path& run) {
@@ -151,26 +163,112 @@ TruthEvaluation ReadAndEvaluateTruth(const ObjectsArguments& arguments, const Ob
                        arguments.min_masks);
 }
 
+// The true trajectory for --truth. Throws InputError if there is none.
+Trajectory ReadTrueTrajectory(const ObjectsArguments& arguments, const Trajectory& run) {
+  std::error_code error;
+  std::filesystem::path path = arguments.groundtruth;
+  if (path.empty()) {
+    path = arguments.truth.parent_path() / "groundtruth.txt";
+    if (!std::filesystem::exists(path, error)) {
+      const FinishedRun finished = OpenFinishedRun(arguments.run);
+      path = finished.Find(finished.sequence.path).value_or(finished.folder) / "groundtruth.txt";
+    }
+    if (!std::filesystem::exists(path, error)) {
+      throw InputError(path.string() +
+                       ": there is no true trajectory, give --groundtruth FILE or --align none");
+    }
+  }
+  PoseFile file = ReadPoseFile(path);
+  if (!file.has_stamps) {
+    SetStamps(path, StampsOf(run), file);
+  }
+  PrintWarnings(file.notes);
+  return std::move(file.poses);
+}
+
+// Replaces ellipsoids by the upright boxes of scene.json, if the objects have one.
+void UseUprightBoxes(const std::filesystem::path& run, const Sim3& truth_from_map,
+                     std::vector<MappedBody>& bodies) {
+  for (const SceneObject& object : ReadScene(run / "scene.json").objects) {
+    const auto body = std::ranges::find(bodies, object.id, &MappedBody::id);
+    if (object.box && body != bodies.end()) {
+      const Ellipsoid box =
+          truth_from_map * Ellipsoid{object.box->world_from_box, object.box->half_extents};
+      body->body = {BodyKind::kBox, box.world_from_object, box.half_axes};
+    }
+  }
+}
+
+// Compares the mapped objects with the bodies of --truth. Throws InputError for bad files, and if
+// no pose of the run has a true pose at its time.
+BodyEvaluation ReadAndEvaluateBodies(const ObjectsArguments& arguments, const ObjectResults& report,
+                                     AlignmentKind alignment) {
+  std::vector<TrueBody> truths = ReadTrueBodies(arguments.truth);
+  for (TrueBody& truth : truths) {
+    truth.is_counted &= truth.masks.value_or(arguments.min_masks) >= arguments.min_masks;
+  }
+  Sim3 truth_from_map;
+  if (alignment != AlignmentKind::kNone) {
+    const Trajectory run = ReadTrajectory(arguments.run / "trajectory.txt");
+    const Trajectory groundtruth = ReadTrueTrajectory(arguments, run);
+    const AteResult ate = EvaluateAte(groundtruth, run, {.alignment = alignment});
+    if (!ate.ok()) {
+      throw InputError((arguments.run / "trajectory.txt").string() + ": " + ate.failure);
+    }
+    truth_from_map = AlignWorlds({groundtruth, run, ate, alignment}, report);
+  }
+  std::vector<MappedBody> mapped = MappedBodies(report, truth_from_map);
+  if (arguments.upright) {
+    UseUprightBoxes(arguments.run, truth_from_map, mapped);
+  }
+  BodyEvaluation bodies = EvaluateBodies(std::move(truths), std::move(mapped));
+  bodies.alignment = alignment;
+  bodies.scale = truth_from_map.scale;
+  if (bodies.mapped.empty()) {
+    PrintWarnings({arguments.run.string() + ": has no mapped objects"});
+  } else if (!bodies.have_common_class) {
+    PrintWarnings({arguments.truth.string() + ": has no class of a mapped object"});
+  }
+  return bodies;
+}
+
 void AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
-  const std::map<std::string, AlignmentKind> alignments = {{"se3", AlignmentKind::kSe3},
-                                                           {"sim3", AlignmentKind::kSim3}};
   CLI::App* const command =
-      app.add_subcommand("objects", "SIoU, MTD and tangent distance of the objects of a run");
+      app.add_subcommand("objects", "how well the objects of a run fit their masks or the truth");
   command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
-  command->add_option("--groundtruth", arguments.groundtruth,
-                      "groundtruth_objects.json of the sequence, which make_synthetic wrote "
-                      "(default: no comparison with true objects)");
+  command->add_option("--truth", arguments.truth,
+                      "true boxes and ellipsoids: a list, groundtruth_objects.json of "
+                      "make_synthetic, or scene_gt.json of BOP (default: none)");
+  command->add_option(
+      "--groundtruth", arguments.groundtruth,
+      "with --truth: the true trajectory (default: groundtruth.txt beside that file "
+      "or in the sequence of the run); else groundtruth_objects.json of "
+      "make_synthetic (default: no comparison with true objects)");
   command
       ->add_option("--align", arguments.alignment,
-                   "alignment with the true trajectory: se3 or sim3, with scale (default: sim3 if "
-                   "summary.json in RUN_DIR says that the run was monocular, else se3)")
-      ->transform(CLI::CheckedTransformer(alignments).description(""));
+                   "alignment with the true trajectory: se3, sim3 (with scale) or, with --truth, "
+                   "none (default: that of summary.json in RUN_DIR)")
+      ->transform(CLI::CheckedTransformer(Alignments()).description(""));
+  command->add_flag_callback(
+      "--given-poses", [&] { arguments.alignment = AlignmentKind::kNone; },
+      "the run had true poses: the same as --align none");
+  command->add_flag("--upright", arguments.upright,
+                    "with --truth: compare the upright boxes of scene.json, not the ellipsoids");
   command
       ->add_option("--min-masks", arguments.min_masks,
                    "a true object counts as visible if at least this many masks show it")
       ->check(CLI::Range(0, 1000000).description(""))
       ->capture_default_str();
-  command->add_flag("--json", arguments.json, "print the report as JSON");
+  command
+      ->add_option_function<std::string>(
+          "--json",
+          [&](const std::string& file) {
+            arguments.json = true;
+            arguments.json_file = file;
+          },
+          "print the report as JSON, or write it to FILE and print the tables")
+      ->expected(0, 1)
+      ->type_name("[FILE]");
 }
 
 // Prints how well the objects of a run fit their observations and, with ground truth, how near they
@@ -182,14 +280,25 @@ void RunObjectsCommand(const ObjectsArguments& arguments) {
   const AlignmentKind alignment =
       arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);
   std::optional<TruthEvaluation> truth;
-  if (!arguments.groundtruth.empty()) {
-    truth = ReadAndEvaluateTruth(arguments, report, alignment);
+  std::optional<BodyEvaluation> bodies;
+  if (!arguments.truth.empty()) {
+    bodies = ReadAndEvaluateBodies(arguments, report, alignment);
+  } else if (arguments.alignment == AlignmentKind::kNone) {
+    throw InputError("--align none and --given-poses need --truth FILE");
+  } else if (!arguments.groundtruth.empty()) {
+    const bool is_scaled = alignment == AlignmentKind::kSim3;
+    truth = ReadAndEvaluateTruth(arguments, report,
+                                 is_scaled ? AlignmentKind::kSim3 : AlignmentKind::kSe3);
   }
   if (arguments.json) {
-    Print("{}\n", EvaluationJson(report, truth));
-    return;
+    const std::string json = EvaluationJson(report, truth, bodies) + '\n';
+    if (arguments.json_file.empty()) {
+      Print("{}", json);
+      return;
+    }
+    WriteFileAtomically(arguments.json_file, json);
   }
-  Print("{}", EvaluationText(report, alignment, truth));
+  Print("{}", EvaluationText(report, alignment, truth, bodies));
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "files/read_file.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
+#include "results/true_object_file.h"
 #include "support/temporary_folder.h"
+#include "synthetic/object_models.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -63,6 +66,32 @@ TEST(WriteSequenceFiles, IclHasAMirroredGroundTruthFromIndexOneAndAFolderForOthe
   const Eigen::Matrix3d expected =
       flip.asDiagonal() * right.rotation.toRotationMatrix() * flip.asDiagonal();
   EXPECT_TRUE(given.rotation.toRotationMatrix().isApprox(expected, 1e-7));
+}
+
+TEST(WriteSequenceFiles, SaysWhichObjectsAreRoundAndHowManyMasksShowThem) {
+  const TemporaryFolder root;
+  SequencePlan plan = TwoFrames(DatasetForm::kTum);
+  for (const ObjectBuilder& model :
+       {MakeBottle({}, {}), MakeMug({}), MakeSolid("cup", Shape::Cylinder(0.1, 0.2), {}),
+        MakeSolid("bowl", Shape::Superquadric({0.1, 0.1, 0.05}, 0.6, 1.0), {}),
+        MakeSolid("vase", Shape::Superquadric({0.1, 0.1, 0.05}, 0.6, 0.6), {}),
+        MakeSolid("apple", Shape::Ellipsoid({0.1, 0.2, 0.1}), {})}) {
+    plan.scene.objects.push_back(model.Build({1.0, 2.0, 0.0}, 0.5));
+    plan.scene.objects.back().id = static_cast<int>(plan.scene.objects.size());
+  }
+  WriteSequenceFiles(root.path(), plan, {0, 1, 2, 3, 4, 5});
+  const std::vector<TrueObject> objects =
+      ReadTrueScene(root.path() / "groundtruth_objects.json").objects;
+  ASSERT_EQ(objects.size(), 6U);
+  const std::vector<bool> is_round = {true, false, true, true, false, false};
+  for (size_t i = 0; i < objects.size(); ++i) {
+    EXPECT_EQ(objects[i].is_round, is_round[i]) << objects[i].label;
+    EXPECT_EQ(objects[i].masks, i);
+  }
+  EXPECT_EQ(objects[2].shape, "cylinder");
+  WriteSequenceFiles(root.path(), plan);
+  EXPECT_FALSE(
+      ReadTrueScene(root.path() / "groundtruth_objects.json").objects[0].masks.has_value());
 }
 
 TEST(WriteNewFile, SaysWhichFileCannotBeWritten) {

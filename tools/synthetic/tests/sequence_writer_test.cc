@@ -198,6 +198,27 @@ TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
   EXPECT_GE(instances, 10);
 }
 
+TEST_F(SequenceWriterTest, TheTrueObjectsCountTheirMasks) {
+  const fs::path folder = Write("out", {.scene = SceneKind::kPushed, .frames = 3, .threads = 2});
+  std::map<int, uint32_t> lines;  // by class
+  for (const auto& entry : fs::directory_iterator(folder / "masks")) {
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      ++lines[std::stoi(line)];
+    }
+  }
+  const auto truth = nlohmann::json::parse(Read(folder / "groundtruth_objects.json"));
+  std::map<int, uint32_t> counted;
+  for (const auto& object : truth["objects"]) {
+    EXPECT_LE(object["masks"], 3);
+    if (object["masks"] > 0) {
+      counted[object["class_id"].get<int>()] += object["masks"].get<uint32_t>();
+    }
+  }
+  EXPECT_EQ(counted, lines);
+  EXPECT_EQ(truth["unclassed"][0]["masks"], 0);
+}
+
 TEST_F(SequenceWriterTest, TheFileOfARearrangedSceneNamesTheChangesOfObjects) {
   const fs::path before = Write("before", {.frames = 1, .seed = 3});
   const fs::path after = Write("after", {.frames = 1, .seed = 3, .rearranged = 1});
