@@ -11,9 +11,8 @@ rule below.
 4. A public header includes no header of CGAL, SuiteSparse or Embree, so that users of the library do
    not need them.
 5. Names of lenses, sensors and data sets stand in the code of few modules only (WORDS).
-6. No folder of the library has more than MOST_FILES files, all of them together no
-   more than ALL_FILES, no file more than MOST_LINES lines, and no part of PARTS and no scripts more
-   lines than are given there.
+6. No folder of the library has more than MOST_FILES files, all of them together no more than ALL_FILES,
+   no file more than MOST_LINES lines, and no part of PARTS and no scripts more than is given there.
 """
 
 import dataclasses

@@ -25,8 +25,7 @@ require("numpy", "PIL")
 import numpy as np  # noqa: E402
 import PIL.Image  # noqa: E402
 
-from run_alignment import pair  # noqa: E402
-from tum_and_icl import (check_empty, link, link_descriptions, read_rows, stamps_of,  # noqa: E402
+from tum_and_icl import (check_empty, link, link_descriptions, pair, read_rows, stamps_of,  # noqa: E402
                          write_images)
 
 KINDS = ("rgb", "depth")

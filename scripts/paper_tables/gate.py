@@ -23,9 +23,9 @@ import numpy as np
 
 from paper_tables.definitions import ALL_MODES
 from paper_tables.text import DASH, Best, Grid
-from run_alignment import LEAST_POSES, align, align_most, move, pair
 from run_statistics import sign_probability
 from support import InputError, read_trajectory, value_at
+from tum_and_icl import LEAST_POSES, align, align_most, move, pair
 
 WRONG = 0.05  # of the true path: a frame that is farther off is wrong
 OTHER_PART = 10.0  # percent of the frames that only one of two runs knows: a run that loses more frames

@@ -46,12 +46,6 @@ struct CalibratedRun {
 // InputError for bad input, for cameras of different sizes, and if SLAM finds too little.
 std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run);
 
-// Prints a table of the numbers of the camera, and which motion would determine the others.
-void PrintCalibration(const CalibratedRun& calibrated);
-
-// The lines that a camera file has as comments: where its numbers come from.
-std::vector<std::string> OriginOf(const CalibratedRun& calibrated);
-
 // The settings of what is not in the camera itself: the times of rows, and depth images.
 std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options);
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/calibration_text.h"
 #include "hullslam/util/error.h"
 #include "run/calibration_run.h"
 #include "run/command_line.h"
@@ -53,7 +54,8 @@ bool SelfCalibrate(const Dataset& dataset, RunArguments& arguments, DatasetChoic
     return false;
   }
   if (!arguments.quiet) {
-    PrintCalibration(*calibrated);
+    Print("{}",
+          CalibrationText(calibrated->calibration, calibrated->pair, calibrated->sequences.size()));
   }
   if (calibrated->pair && calibrated->pair->is_changed) {
     throw InputError(

@@ -17,7 +17,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "degrade_sequ
 sys.path.insert(0, str(SCRIPT.parent))
 import degrade_sequence  # noqa: E402
 import disturbances  # noqa: E402
-import run_alignment  # noqa: E402
+import tum_and_icl  # noqa: E402
 import yolo_masks  # noqa: E402
 
 try:
@@ -185,7 +185,7 @@ class DegradeSequenceTest(unittest.TestCase):
             self.assertTrue(100 < blurred[15] < 150 < blurred[16] < 200, blurred)
 
     def test_depth_is_paired_by_the_smallest_difference(self):
-        pairs = run_alignment.pair(np.array([1.0, 1.01]), np.array([1.011, 1.03, 0.985]))
+        pairs = tum_and_icl.pair(np.array([1.0, 1.01]), np.array([1.011, 1.03, 0.985]))
         self.assertEqual(pairs.tolist(), [[0, 2], [1, 0]])
 
     def files(self):

@@ -15,7 +15,7 @@ import numpy as np
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 from paper_tables.gate import Comparison, figures_of_poses, frame_line  # noqa: E402
-from run_alignment import align, align_most, move, pair  # noqa: E402
+from tum_and_icl import align, align_most, move, pair  # noqa: E402
 
 CASES, RUNS = 12, 3
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/calibration_text.h"
 #include "files/staged_file.h"
 #include "run/calibration_run.h"
 #include "run/command_line.h"
@@ -86,7 +85,8 @@ int RunCalibrate(int argc, char** argv) {
   if (!calibrated) {
     return kFailed;
   }
-  PrintCalibration(*calibrated);
+  Print("{}",
+        CalibrationText(calibrated->calibration, calibrated->pair, calibrated->sequences.size()));
   if (arguments.is_check) {
     return kDone;
   }
@@ -101,7 +101,8 @@ int RunCalibrate(int argc, char** argv) {
   WriteFileAtomically(
       arguments.output,
       CameraFileText(static_cast<CameraFormat>(format), cameras ? cameras->left : options.camera,
-                     options.frames_per_second, extra, OriginOf(*calibrated)));
+                     options.frames_per_second, extra,
+                     OriginOf(calibrated->calibration, calibrated->pair, calibrated->sequences)));
   Print("{} has the {}\n", arguments.output.string(),
         !cameras      ? "camera"
         : format == 0 ? "cameras of the pair"
