@@ -85,6 +85,20 @@ class _depth:
     """error of a keypoint with depth: pixel and disparity have independent errors, or both columns of a stereo camera have the error of the keypoint (one of: disparity, right_column; default disparity)"""
     pixel_sigma: float
     """error of a keypoint of pyramid level 0 in tracking and mapping, px (a number from 0.01 to 100; default 0.56)"""
+    shift_x: float
+    """translation from colour to registered depth images, m (a number from -0.2 to 0.2; default 0)"""
+    shift_y: float
+    """translation from colour to registered depth images, m (a number from -0.2 to 0.2; default 0)"""
+    shift_z: float
+    """translation from colour to registered depth images, m (a number from -0.2 to 0.2; default 0)"""
+    time_offset: float
+    """depth images are taken so much later than their stamps say, s (a number from -0.2 to 0.2; default 0)"""
+    turn_x: float
+    """rotation from colour to registered depth images, rad (a number from -0.2 to 0.2; default 0)"""
+    turn_y: float
+    """rotation from colour to registered depth images, rad (a number from -0.2 to 0.2; default 0)"""
+    turn_z: float
+    """rotation from colour to registered depth images, rad (a number from -0.2 to 0.2; default 0)"""
 
 class _loop:
     closing: bool
