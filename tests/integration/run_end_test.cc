@@ -81,7 +81,7 @@ TEST_F(RunEnd, AFolderNeverMixesTwoRuns) {
   ASSERT_EQ(Run({"--masks", masks_}).exit_code, 0);
   EXPECT_TRUE(fs::exists(output_ / "objects.json"));
   EXPECT_EQ(Summary()["files"],
-            (Json{"trajectory.txt", "keyframes.txt", "map.ply", "objects.json",
+            (Json{"settings.yaml", "trajectory.txt", "keyframes.txt", "map.ply", "objects.json",
                   "objects_observations.json", "objects.csv", "objects.ply", "scene.json"}));
   ASSERT_EQ(Run({}).exit_code, 0);
   EXPECT_FALSE(fs::exists(output_ / "objects.json"));
