@@ -197,25 +197,26 @@ bool AreOnOneSurface(float before, float centre, float after, float most_bend) {
   return before > 0.0F && after > 0.0F && std::abs(0.5F * (before + after) - centre) <= most_bend;
 }
 
-// The inverse depths without the pixels near the border of a surface and near unknown pixels.
-cv::Mat WithoutBorders(const cv::Mat& inverse, float most_bend) {
+// A row of the inverse depths without the pixels near the border of a surface and near unknown
+// pixels.
+void WriteInnerRow(const cv::Mat& inverse, int y, float most_bend, float* inner) {
   constexpr int kReach = 2;  // px
-  constexpr std::array<std::array<int, 2>, 4> kDirections = {{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
-  cv::Mat inner = cv::Mat::zeros(inverse.size(), CV_32FC1);
-  for (int y = kReach; y < inverse.rows - kReach; ++y) {
-    for (int x = kReach; x < inverse.cols - kReach; ++x) {
-      const float centre = inverse.at<float>(y, x);
-      const bool is_inner =
-          centre > 0.0F && std::ranges::all_of(kDirections, [&](const std::array<int, 2>& way) {
-            const int dx = kReach * way[0];
-            const int dy = kReach * way[1];
-            return AreOnOneSurface(inverse.at<float>(y - dy, x - dx), centre,
-                                   inverse.at<float>(y + dy, x + dx), most_bend);
-          });
-      inner.at<float>(y, x) = is_inner ? centre : 0.0F;
+  if (y < kReach || y >= inverse.rows - kReach) {
+    return;
+  }
+  const auto* const above = inverse.ptr<float>(y - kReach);
+  const auto* const row = inverse.ptr<float>(y);
+  const auto* const below = inverse.ptr<float>(y + kReach);
+  for (int x = kReach; x < inverse.cols - kReach; ++x) {
+    const auto is_plane = [&](float before, float after) {
+      return AreOnOneSurface(before, row[x], after, most_bend);
+    };
+    if (row[x] > 0.0F && is_plane(row[x - kReach], row[x + kReach]) &&
+        is_plane(above[x], below[x]) && is_plane(above[x - kReach], below[x + kReach]) &&
+        is_plane(above[x + kReach], below[x - kReach])) {
+      inner[x] = row[x];
     }
   }
-  return inner;
 }
 
 // The points of a depth image (camera frame, m).
@@ -255,17 +256,25 @@ class Points {
   float most_bend_;
 };
 
-// 1/m, 0 where the depth is unknown or beyond `max_depth`.
-cv::Mat InverseDepth(const cv::Mat& depth, const DepthOptions& options, double max_depth) {
-  cv::Mat inverse(depth.size(), CV_32FC1);
-  for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) {
-      const float metres = SampleDepth(depth, {x, y}, options.units_per_metre);
-      const bool is_used = metres > 0.0F && static_cast<double>(metres) <= max_depth;
-      inverse.at<float>(y, x) = is_used ? 1.0F / metres : 0.0F;
-    }
+// A row of inverse depths, 1/m, 0 where the depth is unknown or beyond `max_depth`.
+void WriteInverseRow(const cv::Mat& depth, int y, const DepthOptions& options, double max_depth,
+                     float* inverse) {
+  for (int x = 0; x < depth.cols; ++x) {
+    const float metres = SampleDepth(depth, {x, y}, options.units_per_metre);
+    const bool is_used = metres > 0.0F && static_cast<double>(metres) <= max_depth;
+    inverse[x] = is_used ? 1.0F / metres : 0.0F;
   }
-  return inverse;
+}
+
+// Calls `task` for each row of an image.
+void ForRows(int rows, TaskRunner& runner, const std::function<void(int)>& task) {
+  constexpr int kPerTask = 32;
+  runner.Run(static_cast<size_t>((rows + kPerTask - 1) / kPerTask), [&](size_t i) {
+    const int first = kPerTask * static_cast<int>(i);
+    for (int y = first; y < std::min(rows, first + kPerTask); ++y) {
+      task(y);
+    }
+  });
 }
 
 }  // namespace
@@ -304,32 +313,37 @@ std::vector<Rigid3> PosesOfRows(const SystemOptions& options, const Rigid3& cam_
 }
 
 DepthView MakeDepthView(const cv::Mat& depth, const SystemOptions& options, double max_depth,
-                        const cv::Mat& rays) {
+                        const cv::Mat& rays, TaskRunner& runner) {
   constexpr double kMostBend = 0.3;  // px of disparity; see frame/depth_source.cc
+  const auto most_bend = static_cast<float>(kMostBend / options.camera.bf);
+  cv::Mat inverse(depth.size(), CV_32FC1);
+  ForRows(depth.rows, runner, [&](int y) {
+    WriteInverseRow(depth, y, options.depth, max_depth, inverse.ptr<float>(y));
+  });
   DepthView view;
   view.camera = options.camera;
   view.readout = options.readout_direction;
   view.rays = rays;
-  const auto most_bend = static_cast<float>(kMostBend / options.camera.bf);
-  const cv::Mat inverse_depth = InverseDepth(depth, options.depth, max_depth);
-  view.inverse_depth = WithoutBorders(inverse_depth, most_bend);
-  view.cosine = cv::Mat::zeros(depth.size(), CV_32FC1);
-  view.weight = cv::Mat::zeros(depth.size(), CV_32FC1);
-  const Points points(inverse_depth, rays, most_bend);
-  const double per_inverse = options.camera.bf / options.depth.error.disparity_sigma;
-  for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) {
-      const auto inverse = static_cast<double>(view.inverse_depth.at<float>(y, x));
-      const float cosine = inverse > 0.0 ? points.Cosine(x, y) : 0.0F;
-      if (static_cast<double>(cosine) >= kLeastCosine) {
-        // The depth z has the standard deviation z^2 disparity_sigma / bf.
-        const double per_sigma = per_inverse * inverse * inverse;
-        view.cosine.at<float>(y, x) = cosine;
-        view.weight.at<float>(y, x) = cosine * static_cast<float>(per_sigma * per_sigma);
-      }
-    }
+  for (cv::Mat* const image : {&view.inverse_depth, &view.cosine, &view.weight}) {
+    *image = cv::Mat(depth.size(), CV_32FC1, cv::Scalar(0.0));
   }
-  view.inverse_depth.setTo(0.0F, view.weight == 0.0F);
+  const Points points(inverse, rays, most_bend);
+  const double per_inverse = options.camera.bf / options.depth.error.disparity_sigma;
+  ForRows(depth.rows, runner, [&](int y) {
+    auto* const inner = view.inverse_depth.ptr<float>(y);
+    WriteInnerRow(inverse, y, most_bend, inner);
+    for (int x = 0; x < depth.cols; ++x) {
+      const float cosine = inner[x] > 0.0F ? points.Cosine(x, y) : 0.0F;
+      if (static_cast<double>(cosine) < kLeastCosine) {
+        inner[x] = 0.0F;
+        continue;
+      }
+      // The depth z has the standard deviation z^2 disparity_sigma / bf.
+      const double per_sigma = per_inverse * std::pow(static_cast<double>(inner[x]), 2);
+      view.cosine.at<float>(y, x) = cosine;
+      view.weight.at<float>(y, x) = cosine * static_cast<float>(per_sigma * per_sigma);
+    }
+  });
   return view;
 }
 
@@ -448,7 +462,7 @@ class MeshMaker {
  private:
   enum class Outcome { kDone, kStopped, kTooLarge };
 
-  // The median depth over 150 in steps 1, 2, 5: 1 cm at 1.5 m.
+  // The median depth over 150, rounded to one digit: 1 cm at 1.5 m.
   double ChooseVoxel() const {
     std::vector<float> depths;
     for (const MeshFrame& frame : Thin(frames_, 8)) {
@@ -468,11 +482,7 @@ class MeshMaker {
     }
     const double wanted = static_cast<double>(Median(std::move(depths))) / 150.0;
     const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-    const double digit = wanted / power;
-    return power * (digit < std::sqrt(2.0)    ? 1.0
-                    : digit < std::sqrt(10.0) ? 2.0
-                    : digit < std::sqrt(50.0) ? 5.0
-                                              : 10.0);
+    return power * std::round(wanted / power);
   }
 
   // The view of a frame, without things that move.
@@ -491,7 +501,7 @@ class MeshMaker {
         depth.setTo(0, moving);
       }
     }
-    DepthView view = MakeDepthView(depth, input_.options, max_depth_, rays_);
+    DepthView view = MakeDepthView(depth, input_.options, max_depth_, rays_, runner_);
     view.colour = LoadColour(input_.sequence, frame, camera);
     view.cam_from_world =
         PosesOfRows(input_.options, Inverse(input_.poses[chosen.pose].world_from_cam),

@@ -95,6 +95,6 @@ std::vector<Rigid3> PosesOfRows(const SystemOptions& options, const Rigid3& cam_
 // angle. The weight of another depth is the cosine of this angle over the variance of the depth
 // (DepthErrorOptions). `rays` are those of the camera. The view has no pose and no colour yet.
 DepthView MakeDepthView(const cv::Mat& depth, const SystemOptions& options, double max_depth,
-                        const cv::Mat& rays);
+                        const cv::Mat& rays, TaskRunner& runner);
 
 }  // namespace hullslam

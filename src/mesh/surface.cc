@@ -16,6 +16,7 @@ using Block = VoxelVolume::Block;
 
 constexpr int kSide = VoxelVolume::kSide;
 constexpr size_t kCells = static_cast<size_t>(kSide) * kSide * kSide;
+constexpr float kLeastEdges = 3.0F;  // of a cell that have the surface: a plane has three to six
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
 size_t IndexOf(const Eigen::Vector3i& at) {
@@ -156,16 +157,8 @@ class Extraction {
 
   void MakeVertex(const Block& block, const Eight& behind, const Eigen::Vector3i& at, Part& part) {
     std::array<const Voxel*, 8> corners{};
-    int in_front = 0;
     for (unsigned i = 0; i < 8; ++i) {
       corners[i] = VoxelAt(behind, at + Corner(i));
-      if (corners[i] == nullptr) {
-        return;
-      }
-      in_front += corners[i]->distance < 0.0F ? 0 : 1;
-    }
-    if (in_front == 0 || in_front == 8) {
-      return;
     }
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     Eigen::Vector3f colour = Eigen::Vector3f::Zero();
@@ -173,7 +166,8 @@ class Extraction {
     for (unsigned i = 0; i < 8; ++i) {
       for (unsigned axis = 0; axis < 3; ++axis) {
         const unsigned other = i | (1U << axis);
-        if (other == i || !HasSurface(*corners[i], *corners[other])) {
+        if (other == i || corners[i] == nullptr || corners[other] == nullptr ||
+            !HasSurface(*corners[i], *corners[other])) {
           continue;
         }
         const float share =
@@ -185,7 +179,7 @@ class Extraction {
         count += 1.0F;
       }
     }
-    if (count == 0.0F) {
+    if (count < kLeastEdges) {
       return;
     }
     part.vertex[IndexOf(at)] = static_cast<uint32_t>(part.positions.size());

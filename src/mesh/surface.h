@@ -19,11 +19,11 @@ struct SurfaceMesh {
 };
 
 // The surface where the distances of a volume are zero, by surface nets (Gibson 1998): a cube of
-// eight seen voxels with distances of both signs has one vertex, the mean of the points of its
-// edges where the interpolated distance is zero. Each such edge joins the vertices of its four
-// cubes to two triangles. An edge whose distances differ by the truncation or more has no surface:
-// its voxels were seen from different sides of something thin, or of the border of a surface. The
-// same volume gives the same bits on any number of threads.
+// eight voxels has one vertex, the mean of the points of its edges between seen voxels where the
+// interpolated distance is zero, if there are three or more. Each such edge joins the vertices of
+// its four cubes to two triangles. An edge whose distances differ by the truncation or more has no
+// surface: its voxels were seen from different sides of something thin, or of the border of a
+// surface. The same volume gives the same bits on any number of threads.
 SurfaceMesh ExtractSurface(const VoxelVolume& volume, TaskRunner& runner);
 
 // Removes parts, connected by triangles, with fewer triangles than `least`, and vertices without a

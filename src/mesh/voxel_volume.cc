@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "util/lists.h"
@@ -37,16 +36,62 @@ struct Sample {
   cv::Vec3b colour;
 };
 
+// The depths up to which a view has distances in front of and behind its surfaces, in tiles of the
+// raw image: the largest ones, m; 0 where no surface is known.
+class FarthestDepths {
+ public:
+  FarthestDepths(const DepthView& view, double truncation)
+      : depths_((view.inverse_depth.rows + kTile - 1) / kTile,
+                (view.inverse_depth.cols + kTile - 1) / kTile, CV_32FC1, cv::Scalar(0.0)) {
+    for (int y = 0; y < view.inverse_depth.rows; ++y) {
+      const auto* const row = view.inverse_depth.ptr<float>(y);
+      const auto* const cosines = view.cosine.ptr<float>(y);
+      auto* const tiles = depths_.ptr<float>(y / kTile);
+      for (int x = 0; x < view.inverse_depth.cols; ++x) {
+        if (row[x] > 0.0F) {
+          const float behind = static_cast<float>(truncation) / cosines[x];
+          tiles[x / kTile] = std::max(tiles[x / kTile], 1.0F / row[x] + behind);
+        }
+      }
+    }
+    for (int y = 0; y < depths_.rows; ++y) {
+      const auto* const tiles = depths_.ptr<float>(y);
+      all_ = std::max(all_, *std::max_element(tiles, tiles + depths_.cols));
+    }
+  }
+
+  float all() const { return all_; }
+  // The largest one at most `radius` px away from a raw pixel.
+  float Near(const Eigen::Vector2d& raw, double radius) const {
+    const auto tile = [&](double at, int count) {
+      return static_cast<int>(std::clamp(at / kTile, 0.0, count - 1.0));
+    };
+    float most = 0.0F;
+    for (int y = tile(raw.y() - radius, depths_.rows); y <= tile(raw.y() + radius, depths_.rows);
+         ++y) {
+      const auto* const tiles = depths_.ptr<float>(y);
+      most = std::max(most, *std::max_element(tiles + tile(raw.x() - radius, depths_.cols),
+                                              tiles + tile(raw.x() + radius, depths_.cols) + 1));
+    }
+    return most;
+  }
+
+ private:
+  static constexpr int kTile = 16;  // px
+  cv::Mat depths_;
+  float all_ = 0.0F;
+};
+
 // Adds a view to blocks. Several threads may add it to different blocks.
 class Fusion {
  public:
-  Fusion(const DepthView& view, double farthest, double voxel, double truncation)
+  Fusion(const DepthView& view, const FarthestDepths& farthest, double voxel, double truncation)
       : view_(view),
+        farthest_(farthest),
         bounds_(view.camera.UndistortedBounds()),
         middle_(view.cam_from_world[view.cam_from_world.size() / 2]),
         voxel_(static_cast<float>(voxel)),
-        truncation_(static_cast<float>(truncation)),
-        farthest_(static_cast<float>(farthest)) {
+        truncation_(static_cast<float>(truncation)) {
     if (view.cam_from_world.size() > 1) {
       for (const Rigid3& pose : view.cam_from_world) {
         poses_.emplace_back(pose);
@@ -66,6 +111,7 @@ class Fusion {
     if (!MaySee(origin)) {
       return;
     }
+    const float most_depth = MostDepth(origin);
     const Eigen::Vector3f step = voxel_ * middle_.rotation.col(0);
     size_t i = 0;
     for (int z = 0; z < kSide; ++z) {
@@ -73,7 +119,9 @@ class Fusion {
         Eigen::Vector3f point = origin + voxel_ * Eigen::Vector3i(0, y, z).cast<float>();
         Eigen::Vector3f in_cam = middle_ * point;
         for (int x = 0; x < kSide; ++x, ++i) {
-          AddTo(point, in_cam, block.voxels[i]);
+          if (in_cam.z() <= most_depth) {
+            AddTo(point, in_cam, block.voxels[i]);
+          }
           point.x() += voxel_;
           in_cam += step;
         }
@@ -87,7 +135,7 @@ class Fusion {
     const float half = 0.5F * VoxelVolume::kSide * voxel_;
     const float radius = std::sqrt(3.0F) * half;
     const Eigen::Vector3f centre = middle_ * (origin + Eigen::Vector3f::Constant(half));
-    if (centre.z() < -radius || centre.z() - radius > farthest_ + truncation_) {
+    if (centre.z() < -radius || centre.z() - radius > farthest_.all()) {
       return false;
     }
     // Other rows of a rolling shutter see this far beyond the borders of the middle row's image.
@@ -103,6 +151,26 @@ class Fusion {
                      (bounds_.max_x - camera.cx) / camera.fx) &&
            is_within(centre.y(), (bounds_.min_y - camera.cy) / camera.fy,
                      (bounds_.max_y - camera.cy) / camera.fy);
+  }
+
+  // The depth, m, beyond which all voxels of a block are too far behind the surfaces around its
+  // image. A rolling shutter moves them a little.
+  float MostDepth(const Eigen::Vector3f& origin) const {
+    const float half = 0.5F * VoxelVolume::kSide * voxel_;
+    const Eigen::Vector3f centre = middle_ * (origin + Eigen::Vector3f::Constant(half));
+    const float reach = std::sqrt(3.0F) * half + most_turn_ * centre.norm() + most_shift_;
+    const std::optional<Eigen::Vector2d> raw = RawPixel(centre);
+    if (!raw || centre.z() < 2.0F * reach) {
+      return farthest_.all() + reach;
+    }
+    // A point that moves by `reach` moves by this angle at most, and its image with the lens. (The
+    // norm of the derivative is at least 1.4 times the stretch, which is enough for its changes.)
+    const auto angle =
+        static_cast<double>(reach / (centre.z() - reach) * centre.norm() / centre.z());
+    const Eigen::Vector2d pixel = view_.camera.Project(centre.cast<double>());
+    const double stretch = view_.camera.DistortionJacobian(pixel).norm();
+    return farthest_.Near(*raw, view_.camera.fx * angle * stretch + 1.0) + most_turn_ * reach +
+           most_shift_;
   }
 
   // The raw pixel of a point (camera frame, m).
@@ -187,27 +255,15 @@ class Fusion {
   }
 
   const DepthView& view_;
+  const FarthestDepths& farthest_;
   PinholeCamera::Bounds bounds_;
   FastPose middle_;
   std::vector<FastPose> poses_;  // empty for a global shutter
   float voxel_;
   float truncation_;
-  float farthest_;           // m, the largest depth of the view
   float most_turn_ = 0.0F;   // radians, between the middle row and another one
   float most_shift_ = 0.0F;  // m
 };
-
-// The largest depth of the view, m; 0 if it has none.
-double FarthestDepth(const DepthView& view) {
-  float least = std::numeric_limits<float>::max();
-  for (int y = 0; y < view.inverse_depth.rows; ++y) {
-    const auto* const row = view.inverse_depth.ptr<float>(y);
-    for (int x = 0; x < view.inverse_depth.cols; ++x) {
-      least = row[x] > 0.0F ? std::min(least, row[x]) : least;
-    }
-  }
-  return least < std::numeric_limits<float>::max() ? 1.0 / static_cast<double>(least) : 0.0;
-}
 
 }  // namespace
 
@@ -283,11 +339,12 @@ std::vector<uint64_t> VoxelVolume::TouchedBlocks(const DepthView& view, double f
 }
 
 bool VoxelVolume::Add(const DepthView& view, size_t most_blocks, TaskRunner& runner) {
-  const double farthest = FarthestDepth(view);
-  if (farthest <= 0.0) {
+  const FarthestDepths farthest(view, truncation_);
+  if (farthest.all() <= 0.0F) {
     return true;
   }
-  const std::vector<uint64_t> touched = TouchedBlocks(view, farthest, runner);
+  const std::vector<uint64_t> touched =
+      TouchedBlocks(view, static_cast<double>(farthest.all()), runner);
   if (blocks_.size() + touched.size() > most_blocks) {
     return false;
   }

@@ -74,8 +74,8 @@ class VoxelVolume {
  private:
   // The place of a block as one number. Nothing for a place that is too far away.
   static std::optional<uint64_t> KeyOf(const Eigen::Vector3i& place);
-  // The keys of new blocks that the surfaces of a view are in or nearby, sorted. `farthest` is the
-  // largest depth of the view, m.
+  // The keys of new blocks that the surfaces of a view are in or nearby, sorted. `farthest` is at
+  // least the largest depth of the view, m.
   std::vector<uint64_t> TouchedBlocks(const DepthView& view, double farthest,
                                       TaskRunner& runner) const;
   void AddKeysOfRow(const DepthView& view, int row, int step, std::vector<uint64_t>& keys) const;

@@ -67,8 +67,9 @@ inline DepthView DrawView(const SystemOptions& options, std::vector<Rigid3> cam_
                           const HitDistance& hit, const cv::Scalar& bgr = {30, 20, 10}) {
   cv::Mat seen;
   const cv::Mat rays = RaysOf(options.camera, seen);
+  SerialRunner runner;
   DepthView view =
-      MakeDepthView(DrawDepth(options.camera, cam_from_world, hit), options, 10.0, rays);
+      MakeDepthView(DrawDepth(options.camera, cam_from_world, hit), options, 10.0, rays, runner);
   view.cam_from_world = std::move(cam_from_world);
   view.colour = cv::Mat(view.inverse_depth.size(), CV_8UC3, bgr);
   return view;
