@@ -200,7 +200,7 @@ bool AreOnOneSurface(float before, float centre, float after, float most_bend) {
 // A row of the inverse depths without the pixels near the border of a surface and near unknown
 // pixels.
 void WriteInnerRow(const cv::Mat& inverse, int y, float most_bend, float* inner) {
-  constexpr int kReach = 2;  // px
+  constexpr int kReach = 1;  // px
   if (y < kReach || y >= inverse.rows - kReach) {
     return;
   }
@@ -418,6 +418,70 @@ cv::Mat ReadDepth(const MeshInput& input, const FramePaths& frame, TaskRunner& r
                                 depth.disparity_offset, camera.bf, depth.units_per_metre);
 }
 
+// The region of a view that may show an object, and the contour of the object in the middle row's
+// image.
+class ObjectRegion {
+ public:
+  // `contour` has undistorted pixels, three or more.
+  ObjectRegion(const DepthView& view, const std::vector<Eigen::Vector2d>& contour) {
+    constexpr int kMargin = 32;  // px, more than a rolling shutter moves pixels
+    std::vector<cv::Point> outline;
+    for (const Eigen::Vector2d& point : contour) {
+      outline.emplace_back(cvRound(point.x()), cvRound(point.y()));
+      const Eigen::Vector2i raw = view.camera.Distort(point).cast<int>();
+      box_ |= cv::Rect(raw.x() - kMargin, raw.y() - kMargin, 2 * kMargin, 2 * kMargin);
+    }
+    box_ &= cv::Rect({0, 0}, view.inverse_depth.size());
+    inside_ = cv::boundingRect(outline);
+    filled_ = cv::Mat(inside_.size(), CV_8UC1, cv::Scalar(0));
+    cv::fillPoly(filled_, std::vector{outline}, cv::Scalar(255), cv::LINE_8, 0, -inside_.tl());
+  }
+
+  const cv::Rect& box() const { return box_; }  // raw px
+  bool Contains(const Eigen::Vector2d& undistorted) const {
+    const cv::Point at(cvRound(undistorted.x()), cvRound(undistorted.y()));
+    return inside_.contains(at) && filled_.at<uint8_t>(at - inside_.tl()) != 0;
+  }
+
+ private:
+  cv::Rect box_;
+  cv::Rect inside_;
+  cv::Mat filled_;
+};
+
+// The part of a view inside the contour of an object and inside its ellipsoid, which is enlarged,
+// because objects are no ellipsoids.
+DepthView OnlyObject(const DepthView& view, const Ellipsoid& ellipsoid,
+                     const ObjectRegion& region) {
+  constexpr double kEnlarged = 1.3;
+  const Rigid3& middle = view.cam_from_world[view.cam_from_world.size() / 2];
+  const Rigid3 object_from_world = Inverse(ellipsoid.world_from_object);
+  DepthView part = view;
+  part.inverse_depth = cv::Mat(view.inverse_depth.size(), CV_32FC1, cv::Scalar(0.0));
+  std::vector<Rigid3> world_from_cam;
+  for (const Rigid3& pose : view.cam_from_world) {
+    world_from_cam.push_back(Inverse(pose));
+  }
+  for (int y = region.box().y; y < region.box().br().y; ++y) {
+    for (int x = region.box().x; x < region.box().br().x; ++x) {
+      const float inverse = view.inverse_depth.at<float>(y, x);
+      if (inverse <= 0.0F) {
+        continue;
+      }
+      const auto& ray = view.rays.at<cv::Vec2f>(y, x);
+      const Eigen::Vector3f in_cam = Eigen::Vector3f(ray[0], ray[1], 1.0F) / inverse;
+      const Eigen::Vector3d point =
+          world_from_cam[view.PoseIndex(Eigen::Vector2d(x, y))] * in_cam.cast<double>();
+      const Eigen::Vector3d in_object = object_from_world * point;
+      if (in_object.cwiseQuotient(ellipsoid.half_axes).norm() <= kEnlarged &&
+          region.Contains(view.camera.Project(middle * point))) {
+        part.inverse_depth.at<float>(y, x) = inverse;
+      }
+    }
+  }
+  return part;
+}
+
 class MeshMaker {
  public:
   MeshMaker(const MeshInput& input, const MeshOptions& options, TaskRunner& runner)
@@ -538,62 +602,16 @@ class MeshMaker {
       const auto seen = std::ranges::find_if(object.observations, [&](const auto& observation) {
         return std::abs(observation.timestamp - pose.timestamp) <= kSameMoment;
       });
-      if (seen == object.observations.end()) {
+      if (seen == object.observations.end() || seen->contour.size() < 3) {
         continue;
       }
       auto [volume, is_new] = objects_.try_emplace(object.id, voxel_, kTruncation * voxel_);
-      if (!AddTo(volume->second, OnlyObject(view, object.ellipsoid, seen->contour))) {
+      if (!AddTo(volume->second,
+                 OnlyObject(view, object.ellipsoid, ObjectRegion(view, seen->contour)))) {
         return false;
       }
     }
     return true;
-  }
-
-  // The part of the view inside the contour (undistorted pixels of the middle row) and inside the
-  // ellipsoid, which is enlarged, because objects are no ellipsoids.
-  DepthView OnlyObject(const DepthView& view, const Ellipsoid& ellipsoid,
-                       const std::vector<Eigen::Vector2d>& contour) const {
-    constexpr double kEnlarged = 1.3;
-    constexpr int kMargin = 32;  // px, more than a rolling shutter moves pixels
-    std::vector<cv::Point2f> outline;
-    cv::Rect box;
-    for (const Eigen::Vector2d& point : contour) {
-      outline.emplace_back(static_cast<float>(point.x()), static_cast<float>(point.y()));
-      const Eigen::Vector2i raw = view.camera.Distort(point).cast<int>();
-      box |= cv::Rect(raw.x() - kMargin, raw.y() - kMargin, 2 * kMargin, 2 * kMargin);
-    }
-    box &= cv::Rect({0, 0}, view.inverse_depth.size());
-    const Rigid3& middle = view.cam_from_world[view.cam_from_world.size() / 2];
-    const Rigid3 object_from_world = Inverse(ellipsoid.world_from_object);
-    DepthView part = view;
-    part.inverse_depth = cv::Mat(view.inverse_depth.size(), CV_32FC1, cv::Scalar(0.0));
-    std::vector<Rigid3> world_from_cam;
-    for (const Rigid3& pose : view.cam_from_world) {
-      world_from_cam.push_back(Inverse(pose));
-    }
-    for (int y = box.y; y < box.br().y; ++y) {
-      for (int x = box.x; x < box.br().x; ++x) {
-        const float inverse = view.inverse_depth.at<float>(y, x);
-        if (inverse <= 0.0F) {
-          continue;
-        }
-        const auto& ray = rays_.at<cv::Vec2f>(y, x);
-        const Eigen::Vector3d in_cam =
-            (Eigen::Vector3f(ray[0], ray[1], 1.0F) / inverse).cast<double>();
-        const Eigen::Vector3d point =
-            world_from_cam[view.PoseIndex(Eigen::Vector2d(x, y))] * in_cam;
-        const Eigen::Vector3d in_object = object_from_world * point;
-        if (in_object.cwiseQuotient(ellipsoid.half_axes).norm() > kEnlarged) {
-          continue;
-        }
-        const Eigen::Vector2d pixel = view.camera.Project(middle * point);
-        const cv::Point2f at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-        if (cv::pointPolygonTest(outline, at, false) >= 0.0) {
-          part.inverse_depth.at<float>(y, x) = inverse;
-        }
-      }
-    }
-    return part;
   }
 
   Mesh Extract() {

@@ -15,7 +15,7 @@ namespace hullslam {
 namespace {
 
 constexpr std::array<const char*, 10> kCommands = {
-    "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects",
+    "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects", "mesh",
     "query",       "relocalise",         "segment",  "train-vocabulary", "view"};
 
 class Help : public ::testing::TestWithParam<std::string> {};

@@ -63,7 +63,7 @@ class RunEnd : public ::testing::Test {
 
   // Expects the complete files of a run over all frames, and nothing else.
   void ExpectResults() const {
-    EXPECT_EQ(ReadFolder(output_).size(), 4U);
+    EXPECT_EQ(ReadFolder(output_).size(), 5U);
     EXPECT_EQ(ReadTrajectory(output_ / "trajectory.txt").size(), 12U);
     EXPECT_EQ(Summary()["trajectory"]["tracked"], 12);
   }
@@ -245,7 +245,7 @@ TEST_F(RunEnd, AnInterruptWritesTheResultsSoFar) {
       EXPECT_NEAR(Summary()["trajectory"]["coverage"].get<double>(),
                   static_cast<double>(poses.size()) / 12.0, 1e-9);
       EXPECT_EQ(Summary()["provenance"]["interrupted"], true);
-      EXPECT_EQ(ReadFolder(output_).size(), 4U);
+      EXPECT_EQ(ReadFolder(output_).size(), 5U);
     }
   }
 }

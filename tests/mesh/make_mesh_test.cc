@@ -90,7 +90,7 @@ TEST(MakeMesh, BordersGrazingAnglesAndFarDepthsAreNotUsed) {
     EXPECT_FALSE(is_used(x, 60)) << x;
   }
   EXPECT_FALSE(is_used(20, 20));
-  EXPECT_FALSE(is_used(22, 20)) << "beside an unknown depth";
+  EXPECT_FALSE(is_used(21, 20)) << "beside an unknown depth";
   EXPECT_FALSE(is_used(1, 60)) << "at the border of the image";
   EXPECT_EQ(cv::countNonZero(ViewOf(depth, 1.5).weight), 36 * 36);
   const SystemOptions options = SmallCameraOptions();
