@@ -14,7 +14,7 @@
 namespace hullslam {
 namespace {
 
-constexpr std::array<const char*, 10> kCommands = {
+constexpr std::array<const char*, 11> kCommands = {
     "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects", "mesh",
     "query",       "relocalise",         "segment",  "train-vocabulary", "view"};
 
