@@ -8,6 +8,7 @@
 
 #include "eval/object_metrics.h"
 #include "hullslam/results/trajectory_file.h"
+#include "hullslam/settings/settings.h"
 #include "results/object_file.h"
 #include "results/ply_file.h"
 #include "scene/make_scene.h"
@@ -82,6 +83,7 @@ void WriteRunFiles(const RunFiles& files, OutputFolder& output) {
   const RunContent& content = files.content;
   const TrajectoryPart trajectory = {.title = files.session.value_or(std::string()),
                                      .poses = AsRead(files.sequence, content.trajectory)};
+  output.Write({"settings.yaml", FormatSettings(files.options)});
   output.Write({"trajectory.txt", FormatTrajectory(std::span(&trajectory, 1))});
   output.Write({"keyframes.txt", FormatTrajectory(KeyframeParts(files))});
   output.Write({"map.ply", MapPly(content.landmarks.positions, KeyframeTrajectory(*content.map))});

@@ -38,8 +38,9 @@ struct RunFiles {
   bool has_objects = false;
 };
 
-// Writes all files of a run but summary.json (docs/outputs.md): the trajectories and the landmarks,
-// those of the islands, the ground truth if it had to be converted, and the files of the objects.
+// Writes all files of a run but summary.json (docs/outputs.md): the settings, the trajectories and
+// the landmarks, those of the islands, the ground truth if it had to be converted, and the files of
+// the objects.
 void WriteRunFiles(const RunFiles& files, OutputFolder& output);
 
 // "session 2: desk"

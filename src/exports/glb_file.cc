@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 // Numbers of the specification.
 constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
+constexpr int kUnsignedInt = 5125;
 constexpr int kVertices = 34962;
 constexpr int kIndices = 34963;
 constexpr int kPoints = 0;
@@ -57,11 +58,12 @@ size_t AddAccessor(size_t begin, int target, Json accessor, Gltf& gltf) {
   return gltf.json["accessors"].size() - 1;
 }
 
-size_t AddPositions(std::span<const Eigen::Vector3d> positions, Gltf& gltf) {
+template <typename Vector>
+size_t AddPositions(const std::vector<Vector>& positions, Gltf& gltf) {
   const size_t begin = gltf.binary.bytes().size();
   Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3d& position : positions) {
-    const Eigen::Vector3f rounded = position.cast<float>();
+  for (const Vector& position : positions) {
+    const Eigen::Vector3f rounded = position.template cast<float>();
     gltf.binary.PutMatrix(rounded);
     box.extend(rounded);
   }
@@ -74,11 +76,11 @@ size_t AddPositions(std::span<const Eigen::Vector3d> positions, Gltf& gltf) {
                      gltf);
 }
 
-size_t AddColours(std::span<const ColouredPoint> points, Gltf& gltf) {
+size_t AddColours(std::span<const Colour> colours, Gltf& gltf) {
   constexpr double kMost = 65535.0;
   const size_t begin = gltf.binary.bytes().size();
-  for (const ColouredPoint& point : points) {
-    for (const uint8_t channel : point.colour) {
+  for (const Colour& colour : colours) {
+    for (const uint8_t channel : colour) {
       gltf.binary.Put(static_cast<uint16_t>(std::lround(kMost * Linear(channel))));
     }
     gltf.binary.Put(static_cast<uint16_t>(kMost));  // opaque
@@ -86,7 +88,7 @@ size_t AddColours(std::span<const ColouredPoint> points, Gltf& gltf) {
   return AddAccessor(begin, kVertices,
                      {{"componentType", kUnsignedShort},
                       {"normalized", true},
-                      {"count", points.size()},
+                      {"count", colours.size()},
                       {"type", "VEC4"}},
                      gltf);
 }
@@ -95,13 +97,12 @@ size_t AddIndices(std::span<const TriangleMesh::Triangle> triangles, Gltf& gltf)
   const size_t begin = gltf.binary.bytes().size();
   for (const TriangleMesh::Triangle& triangle : triangles) {
     for (const uint32_t corner : triangle) {
-      gltf.binary.Put(static_cast<uint16_t>(corner));
+      gltf.binary.Put(corner);
     }
   }
   return AddAccessor(
       begin, kIndices,
-      {{"componentType", kUnsignedShort}, {"count", 3 * triangles.size()}, {"type", "SCALAR"}},
-      gltf);
+      {{"componentType", kUnsignedInt}, {"count", 3 * triangles.size()}, {"type", "SCALAR"}}, gltf);
 }
 
 size_t AddMaterial(const std::string& name, const Colour& colour, double opacity, Gltf& gltf) {
@@ -133,11 +134,13 @@ void AddPoints(std::span<const ColouredPoint> points, Gltf& gltf) {
     return;
   }
   std::vector<Eigen::Vector3d> positions;
+  std::vector<Colour> colours;
   for (const ColouredPoint& point : points) {
     positions.push_back(point.position);
+    colours.push_back(point.colour);
   }
   const size_t position = AddPositions(positions, gltf);
-  const size_t colour = AddColours(points, gltf);
+  const size_t colour = AddColours(colours, gltf);
   const size_t mesh = AddMesh(
       {{"attributes", {{"POSITION", position}, {"COLOR_0", colour}}}, {"mode", kPoints}}, gltf);
   AddNode({{"name", "points"}, {"mesh", mesh}}, gltf);
@@ -244,27 +247,69 @@ std::string JoinChunks(const std::string& json, const std::string& binary) {
   return bytes;
 }
 
-}  // namespace
-
-std::string FormatGlb(const ExportModel& model, ObjectShape shape) {
-  const Eigen::Vector3d up = model.scene.up.value_or(-Eigen::Vector3d::UnitY());
+// A file that has only the node "map".
+Gltf BeginGltf(const std::optional<Eigen::Vector3d>& up) {
   Gltf gltf;
   gltf.json["asset"] = {{"version", "2.0"}, {"generator", "HullSLAM"}};
   gltf.json["scene"] = 0;
   gltf.json["scenes"][0]["nodes"].push_back(kRoot);
   gltf.json["nodes"].push_back(
       {{"name", "map"},
-       {"rotation", ToJson(Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY()))}});
-  AddPoints(model.points, gltf);
-  AddPath(model.trajectory, gltf);
-  AddCameras(model, gltf);
-  AddObjects(model.scene, shape, gltf);
+       {"rotation", ToJson(Eigen::Quaterniond::FromTwoVectors(
+                        up.value_or(-Eigen::Vector3d::UnitY()), Eigen::Vector3d::UnitY()))}});
+  return gltf;
+}
+
+std::string EndGltf(Gltf& gltf) {
   if (!gltf.binary.bytes().empty()) {
     gltf.json["buffers"].push_back({{"byteLength", gltf.binary.bytes().size()}});
   }
   std::string text = gltf.json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   return JoinChunks(text, gltf.binary.bytes());
+}
+
+// Adds a surface whose material has the colours of the images, which no light changes.
+void AddSurface(const SurfaceMesh& surface, Json node, Gltf& gltf) {
+  if (surface.triangles.empty()) {
+    return;
+  }
+  const size_t position = AddPositions(surface.positions, gltf);
+  const size_t colour = AddColours(surface.colours, gltf);
+  const size_t triangles = AddIndices(surface.triangles, gltf);
+  node["mesh"] = AddMesh({{"attributes", {{"POSITION", position}, {"COLOR_0", colour}}},
+                          {"indices", triangles},
+                          {"material", 0}},
+                         gltf);
+  AddNode(std::move(node), gltf);
+}
+
+}  // namespace
+
+std::string FormatGlb(const ExportModel& model, ObjectShape shape) {
+  Gltf gltf = BeginGltf(model.scene.up);
+  AddPoints(model.points, gltf);
+  AddPath(model.trajectory, gltf);
+  AddCameras(model, gltf);
+  AddObjects(model.scene, shape, gltf);
+  return EndGltf(gltf);
+}
+
+std::string FormatMeshGlb(const Mesh& mesh) {
+  constexpr const char* kUnlit = "KHR_materials_unlit";
+  Gltf gltf = BeginGltf(mesh.up);
+  gltf.json["extensionsUsed"].push_back(kUnlit);
+  gltf.json["materials"].push_back({{"name", "surface"},
+                                    {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}},
+                                    {"extensions", {{kUnlit, Json::object()}}}});
+  AddSurface(mesh.scene, {{"name", "scene"}}, gltf);
+  for (const ObjectSurface& object : mesh.objects) {
+    AddSurface(object.surface,
+               {{"name", fmt::format("{} {}", object.label, object.id.value)},
+                {"extras", {{"object", object.id.value}, {"class", object.label}}}},
+               gltf);
+  }
+  return EndGltf(gltf);
 }
 
 }  // namespace hullslam

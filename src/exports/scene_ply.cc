@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <array>
 
 #include "exports/single_files.h"
+#include "files/bytes.h"
 #include "results/ply_file.h"
 #include "util/statistics.h"
 
@@ -71,6 +74,42 @@ std::string FormatScenePly(const ExportModel& model, ObjectShape shape) {
                  ColourOfClass(placed.object->label));
   }
   return file.MeshFile();
+}
+
+std::string FormatMeshPly(const Mesh& mesh) {
+  ByteWriter vertices;
+  ByteWriter faces;
+  uint32_t count = 0;
+  size_t triangles = 0;
+  const auto add = [&](const SurfaceMesh& surface, int32_t object) {
+    for (size_t i = 0; i < surface.positions.size(); ++i) {
+      vertices.PutMatrix(surface.positions[i]);
+      for (const uint8_t channel : surface.colours[i]) {
+        vertices.Put(channel);
+      }
+      vertices.Put(object);
+    }
+    for (const TriangleMesh::Triangle& triangle : surface.triangles) {
+      faces.Put(uint8_t{3});
+      for (const uint32_t corner : triangle) {
+        faces.Put(static_cast<int32_t>(count + corner));
+      }
+    }
+    count += static_cast<uint32_t>(surface.positions.size());
+    triangles += surface.triangles.size();
+  };
+  add(mesh.scene, -1);
+  for (const ObjectSurface& object : mesh.objects) {
+    add(object.surface, static_cast<int32_t>(object.id.value));
+  }
+  return fmt::format(
+             "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+             "property float x\nproperty float y\nproperty float z\n"
+             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+             "property int object\nelement face {}\n"
+             "property list uchar int vertex_indices\nend_header\n",
+             count, triangles) +
+         vertices.bytes() + faces.bytes();
 }
 
 }  // namespace hullslam

@@ -9,6 +9,7 @@
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
 #include "map/located_landmarks.h"
+#include "mesh/make_mesh.h"
 
 namespace hullslam {
 
@@ -36,6 +37,15 @@ std::string FormatScenePly(const ExportModel& model, ObjectShape shape);
 // has the name of the class and further values in `extras`. Lengths are in the unit of the map. If
 // the scene does not know what is upwards, it is where the top of the first image points.
 std::string FormatGlb(const ExportModel& model, ObjectShape shape);
+
+// A mesh in the same format: in the node "map" a node "scene", and for each object a node with its
+// class and id as name, which `extras` has too. The colours are those of the vertices, without
+// light (KHR_materials_unlit).
+std::string FormatMeshGlb(const Mesh& mesh);
+
+// A mesh as a binary little-endian PLY file with the vertices and faces of PlyWriter. Vertices also
+// have `int object`: the id of their object, -1 for the scene.
+std::string FormatMeshPly(const Mesh& mesh);
 
 // The map as a pose graph in the text format of g2o (https://github.com/RainerKuemmerle/g2o):
 // VERTEX_SE3:QUAT for each keyframe (its id; the pose world_from_cam), of which the first is fixed;

@@ -129,5 +129,35 @@ TEST(Glb, ClassesThatAreNoUtf8AreReplaced) {
   EXPECT_NO_THROW(ReadGlb(FormatGlb(model, ObjectShape::kBoxes)));
 }
 
+Mesh MadeMesh() {
+  Mesh mesh;
+  mesh.scene = {{{0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 1.0F}, {0.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}},
+                {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}},
+                {{0, 1, 2}, {2, 1, 3}}};
+  mesh.objects.push_back({ObjectId(4), "cup", mesh.scene});
+  mesh.objects.push_back({ObjectId(5), "book", {}});  // without a surface
+  return mesh;
+}
+
+TEST(Glb, AMeshHasANodePerObject) {
+  const ReadGlb glb(FormatMeshGlb(MadeMesh()));
+  EXPECT_EQ(glb.json["nodes"].size(), 3U) << "map, scene, cup";
+  EXPECT_EQ(glb.Node("cup 4")["extras"]["object"], 4);
+  EXPECT_EQ(glb.Node("cup 4")["extras"]["class"], "cup");
+  const Json& primitive =
+      glb.json["meshes"][glb.Node("scene")["mesh"].get<size_t>()]["primitives"][0];
+  const Json& indices = glb.json["accessors"][primitive["indices"].get<size_t>()];
+  EXPECT_EQ(indices["count"], 6);
+  const Json& view = glb.json["bufferViews"][indices["bufferView"].get<size_t>()];
+  const std::string bytes = glb.binary.substr(view["byteOffset"].get<size_t>());
+  ByteReader reader(bytes, "indices");
+  for (const uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) {
+    EXPECT_EQ(reader.Get<uint32_t>(), corner);
+  }
+  const size_t colours = primitive["attributes"]["COLOR_0"].get<size_t>();
+  EXPECT_EQ(glb.json["accessors"][colours]["count"], 4);
+  EXPECT_TRUE(glb.json["materials"][0]["extensions"].contains("KHR_materials_unlit"));
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "exports/single_files.h"
+#include "files/bytes.h"
 #include "results/ply_file.h"
 #include "support/made_export.h"
 #include "support/temporary_folder.h"
@@ -33,6 +34,30 @@ TEST(ScenePly, HasPointsThenCamerasThenObjects) {
   }
   EXPECT_EQ(read.colours[12], ColourOfClass("cup"));
   EXPECT_TRUE(read.positions[12].isApprox(Eigen::Vector3f(0.3f - 0.5f, 0.1f - 0.25f, 1.875f)));
+}
+
+TEST(ScenePly, VerticesOfAMeshHaveTheIdOfTheirObject) {
+  Mesh mesh;
+  mesh.scene = {{{1.0F, 2.0F, 3.0F}}, {{7, 8, 9}}, {}};
+  mesh.objects.push_back({ObjectId(4),
+                          "cup",
+                          {{{0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 1.0F}, {0.0F, 1.0F, 1.0F}},
+                           {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}},
+                           {{0, 1, 2}}}});
+  const std::string text = FormatMeshPly(mesh);
+  EXPECT_NE(text.find("element vertex 4\n"), std::string::npos);
+  EXPECT_NE(text.find("property int object\nelement face 1\n"), std::string::npos);
+  const std::string bytes = text.substr(text.find("end_header\n") + 11);
+  ByteReader reader(bytes, "mesh.ply");
+  for (const int32_t object : {-1, 4, 4, 4}) {
+    reader.GetRaw(15);
+    EXPECT_EQ(reader.Get<int32_t>(), object);
+  }
+  EXPECT_EQ(reader.Get<uint8_t>(), 3);
+  for (const int32_t corner : {1, 2, 3}) {
+    EXPECT_EQ(reader.Get<int32_t>(), corner) << "counted over the whole file";
+  }
+  reader.ExpectEnd();
 }
 
 TEST(ScenePly, AnEmptyModelHasNoFaces) {

@@ -14,8 +14,8 @@
 namespace hullslam {
 namespace {
 
-constexpr std::array<const char*, 10> kCommands = {
-    "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects",
+constexpr std::array<const char*, 11> kCommands = {
+    "check-masks", "convert-vocabulary", "evaluate", "export",           "map-objects", "mesh",
     "query",       "relocalise",         "segment",  "train-vocabulary", "view"};
 
 class Help : public ::testing::TestWithParam<std::string> {};

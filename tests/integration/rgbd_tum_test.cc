@@ -108,8 +108,8 @@ TEST_F(RgbdTum, WritesAllResults) {
   for (const auto& [name, bytes] : ReadFolder(output_)) {
     names.push_back(name);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"keyframes.txt", "map.ply", "summary.json",
-                                             "trajectory.txt"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"keyframes.txt", "map.ply", "settings.yaml",
+                                             "summary.json", "trajectory.txt"}));
   ExpectStamps({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
   EXPECT_FALSE(ReadTrajectory(output_ / "keyframes.txt").empty());
   EXPECT_TRUE(ReadFile(output_ / "map.ply").starts_with("ply\n"));

@@ -63,7 +63,7 @@ class RunEnd : public ::testing::Test {
 
   // Expects the complete files of a run over all frames, and nothing else.
   void ExpectResults() const {
-    EXPECT_EQ(ReadFolder(output_).size(), 4U);
+    EXPECT_EQ(ReadFolder(output_).size(), 5U);
     EXPECT_EQ(ReadTrajectory(output_ / "trajectory.txt").size(), 12U);
     EXPECT_EQ(Summary()["trajectory"]["tracked"], 12);
   }
@@ -81,7 +81,7 @@ TEST_F(RunEnd, AFolderNeverMixesTwoRuns) {
   ASSERT_EQ(Run({"--masks", masks_}).exit_code, 0);
   EXPECT_TRUE(fs::exists(output_ / "objects.json"));
   EXPECT_EQ(Summary()["files"],
-            (Json{"trajectory.txt", "keyframes.txt", "map.ply", "objects.json",
+            (Json{"settings.yaml", "trajectory.txt", "keyframes.txt", "map.ply", "objects.json",
                   "objects_observations.json", "objects.csv", "objects.ply", "scene.json"}));
   ASSERT_EQ(Run({}).exit_code, 0);
   EXPECT_FALSE(fs::exists(output_ / "objects.json"));
@@ -245,7 +245,7 @@ TEST_F(RunEnd, AnInterruptWritesTheResultsSoFar) {
       EXPECT_NEAR(Summary()["trajectory"]["coverage"].get<double>(),
                   static_cast<double>(poses.size()) / 12.0, 1e-9);
       EXPECT_EQ(Summary()["provenance"]["interrupted"], true);
-      EXPECT_EQ(ReadFolder(output_).size(), 4U);
+      EXPECT_EQ(ReadFolder(output_).size(), 5U);
     }
   }
 }

@@ -50,6 +50,7 @@ constexpr std::array kCommands = {
     Command{kMeasure, "relocalise", "how often single frames are found in a map", RunRelocalise},
     Command{kConvert, "export", "writes them for COLMAP, nerfstudio, Blender, g2o and others",
             RunExport},
+    Command{kConvert, "mesh", "makes a coloured surface from their depth images", RunMesh},
 };
 
 }  // namespace

@@ -14,6 +14,7 @@ int RunConvertVocabulary(int argc, char** argv);
 int RunEvaluate(int argc, char** argv);
 int RunExport(int argc, char** argv);
 int RunMapObjects(int argc, char** argv);
+int RunMesh(int argc, char** argv);
 int RunQueryObjects(int argc, char** argv);
 int RunRelocalise(int argc, char** argv);
 int RunRun(int argc, char** argv);  // in run/slam_program.cc

@@ -212,13 +212,15 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   return summary;
 }
 
-void WriteOutputs(OutputFolder& output, const ImageSequence& sequence, const KnownPoseMapper& run,
+void WriteOutputs(OutputFolder& output, const OpenedDataset& opened, const KnownPoseMapper& run,
                   const ObjectResults& report, const Scene& scene, RunSummary summary) {
+  output.Write({"settings.yaml", FormatSettings(opened.settings.options)});
   for (const FileContent& file : ObjectFiles(report, scene)) {
     output.Write(file);
   }
   // Written because `evaluate` and plot_run.py expect a trajectory in the folder of every run.
-  const std::string poses = FormatTrajectory(AsRead(sequence, KeyframeTrajectory(run.map())));
+  const std::string poses =
+      FormatTrajectory(AsRead(opened.sequence, KeyframeTrajectory(run.map())));
   output.Write({"trajectory.txt", poses});
   output.Write({"keyframes.txt", poses});
   summary.files = output.names();
@@ -282,7 +284,7 @@ int RunMapObjects(int argc, char** argv) {
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
   const Scene scene = MakeScene(run.map(), report, inputs.groundtruth);
-  WriteOutputs(output, sequence, run, report, scene, summary);
+  WriteOutputs(output, inputs.opened, run, report, scene, summary);
   if (!arguments.quiet) {
     Print("{}{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
           DescribeMapped(run.map(), report), summary.map.keyframes, summary.trajectory.frames,

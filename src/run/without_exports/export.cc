@@ -10,4 +10,9 @@ int RunExport(int, char**) {
   return kFailed;
 }
 
+int RunMesh(int, char**) {
+  RequireComponent("EXPORTS", "a mesh is asked for");
+  return kFailed;
+}
+
 }  // namespace hullslam
