@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "objects/resolved_observation.h"
+#include "scene/box_fit.h"
 #include "scene/joint_observations.h"
 #include "scene/object_body.h"
 #include "scene/relations.h"
@@ -73,6 +74,7 @@ Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& 
   scene.up_from = up.from;
   const Eigen::Quaterniond upright_from_world =
       UprightFromWorld(up.up.value_or(Eigen::Vector3d::UnitZ()));
+  const Rigid3 world_from_upright(upright_from_world.conjugate(), Eigen::Vector3d::Zero());
   std::vector<ObjectBody> bodies;
   for (const ObjectResult& reported : report.objects) {
     if (reported.state != ObjectState::kMapped) {
@@ -89,7 +91,12 @@ Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& 
       bodies.back().height_sigma = std::sqrt(up.up->dot(object.covariance->center * *up.up));
     }
     if (up.up) {
-      object.box = BoxOf(bodies.back(), upright_from_world);
+      const std::optional<FittedBox> box =
+          FitBox(SupportPlanesOf(report.camera, object.ellipsoid, observations, upright_from_world),
+                 bodies.back().ellipsoid);
+      object.box =
+          box ? UprightBox{world_from_upright * box->frame_from_box, box->half_extents, box->sigma}
+              : BoxOf(bodies.back(), upright_from_world);
     }
   }
   const ObservationStatistics observations = CollectObservationStatistics(map, report.camera);

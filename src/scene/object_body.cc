@@ -19,6 +19,12 @@ Eigen::Vector3d SphereDirection(int index, int count) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
+double SupportOf(const Ellipsoid& ellipsoid, const Eigen::Vector3d& normal) {
+  const Rigid3& pose = ellipsoid.world_from_object;
+  const Eigen::Vector3d in_object = pose.rotation.conjugate() * normal;
+  return normal.dot(pose.translation) + ellipsoid.half_axes.cwiseProduct(in_object).norm();
+}
+
 namespace {
 
 constexpr int kSides = 48;  // sides of a footprint
@@ -28,13 +34,6 @@ constexpr int kGapDirections = 256;
 constexpr double kDownwards = 0.5 * std::numbers::sqrt2;
 constexpr size_t kLeastLowerLines = 3;
 constexpr double kLeastLowerShare = 0.25;  // of the lower lines that must not be cut off
-
-// The distance of the tangent plane with the given normal from the origin.
-double SupportOf(const Ellipsoid& ellipsoid, const Eigen::Vector3d& normal) {
-  const Rigid3& pose = ellipsoid.world_from_object;
-  const Eigen::Vector3d in_object = pose.rotation.conjugate() * normal;
-  return normal.dot(pose.translation) + ellipsoid.half_axes.cwiseProduct(in_object).norm();
-}
 
 Eigen::Vector2d DirectionOf(int index, int count) {
   const double angle = 2.0 * std::numbers::pi * index / count;

@@ -17,6 +17,9 @@ namespace hullslam {
 // sphere: a Fibonacci lattice. The first half of them has z > 0.
 Eigen::Vector3d SphereDirection(int index, int count);
 
+// The distance of the tangent plane of an ellipsoid with the given outward normal from the origin.
+double SupportOf(const Ellipsoid& ellipsoid, const Eigen::Vector3d& normal);
+
 // The space that an object takes up, in an upright frame; relations are computed from it. This
 // frame has the origin and the unit of the world, and z upwards.
 struct ObjectBody {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/dual_quadric.h"
+#include "objects/resolved_observation.h"
+#include "scene/scene.h"
+
+namespace hullslam {
+
+// A plane that touches an object: n . x is at most `support` for all its points x.
+struct SupportPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // unit vector, outwards
+  double support = 0.0;                               // m
+  double pixels_per_metre = 1.0;  // shift of the line in its image per shift of the plane
+};
+
+// The planes of all lines of the observations that nothing cuts off, in the frame of
+// `frame_from_world`. Their distances from the camera are those of the ellipsoid.
+std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                                          std::span<const ResolvedObservation> observations,
+                                          const Eigen::Quaterniond& frame_from_world);
+
+// The box with the z axis upwards that touches the planes of the silhouettes best, in the frame of
+// the planes, whose z axis points upwards. The support of a box with the centre c, the axes a_i and
+// the half extents h_i is linear in c and h:
+//   max n . x = n . c + sum_i |n . a_i| h_i.
+// So for each rotation about z, c and h follow from linear least squares of the distances in the
+// images, with Cauchy's loss, and the best rotation is searched. What few planes tell is near
+// `ellipsoid` (in the same frame), whose box is the prior. Nothing if the planes fit the ellipsoid
+// better than any box, so that the object is round, or if they are too few.
+struct FittedBox {
+  Rigid3 frame_from_box;  // the origin is the centre of the box
+  Eigen::Vector3d half_extents;
+  Eigen::Vector3d sigma;  // standard deviations of the half extents, m
+};
+std::optional<FittedBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid);
+
+}  // namespace hullslam
