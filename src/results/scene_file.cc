@@ -38,7 +38,6 @@ SceneJson BoxJson(const std::optional<UprightBox>& box) {
   }
   return {{"centre", VectorJson(box->world_from_box.translation)},
           {"half_extents", VectorJson(box->half_extents)},
-          {"half_extents_sigma", box->sigma ? VectorJson(*box->sigma) : SceneJson(nullptr)},
           {"rotation", VectorJson(box->world_from_box.rotation.coeffs())}};
 }
 

@@ -67,9 +67,6 @@ SceneObject ReadSceneObject(const JsonNode& node) {
     const JsonNode box = node.At("box");
     object.box = UprightBox{{ReadRotation(box.At("rotation")), ReadPosition(box.At("centre"))},
                             box.At("half_extents").Lengths()};
-    if (box.Has("half_extents_sigma")) {
-      object.box->sigma = ReadPosition(box.At("half_extents_sigma"));
-    }
   }
   if (node.Has("centre_covariance")) {
     object.covariance = ShapeCovariance{ReadCovariance(node.At("centre_covariance")),

@@ -46,9 +46,6 @@ struct CalibratedRun {
 // InputError for bad input, for cameras of different sizes, and if SLAM finds too little.
 std::optional<CalibratedRun> RunCalibration(const CalibrationRun& run);
 
-// The settings of what is not in the camera itself: the times of rows, and depth images.
-std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options);
-
 // key=value for --set, with all numbers of the camera.
 std::vector<std::string> OverridesOf(const SystemOptions& options);
 

@@ -65,11 +65,7 @@ class Fit {
 
   double cost() const { return cost_; }
 
-  FittedBox Box() const {
-    const Matrix6d covariance = information_.inverse();
-    return {Rigid3(rotation_, sides_.head<3>()), sides_.tail<3>(),
-            covariance.diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt()};
-  }
+  UprightBox Box() const { return {Rigid3(rotation_, sides_.head<3>()), sides_.tail<3>()}; }
 
  private:
   double ErrorOf(const SupportPlane& plane) const {  // px
@@ -77,10 +73,10 @@ class Fit {
   }
 
   void Step() {
-    information_.setZero();
+    Matrix6d information = Matrix6d::Zero();
     Vector6d right = Vector6d::Zero();
     for (int i = 3; i < 6; ++i) {
-      information_(i, i) = prior_information_;
+      information(i, i) = prior_information_;
       right[i] = prior_information_ * prior_[i];
     }
     for (const SupportPlane& plane : planes_) {
@@ -89,10 +85,10 @@ class Fit {
       const double weight =
           CauchyWeight(error * error, 1.0) * share * share * (error < 0.0 ? beyond_ : 1.0);
       const Vector6d derivative = BySides(plane.normal, rotation_);
-      information_ += weight * derivative * derivative.transpose();
+      information += weight * derivative * derivative.transpose();
       right += weight * plane.support * derivative;
     }
-    sides_ = information_.ldlt().solve(right);
+    sides_ = information.ldlt().solve(right);
     sides_.tail<3>() = sides_.tail<3>().cwiseMax(least_);
   }
 
@@ -104,7 +100,6 @@ class Fit {
   double prior_information_ = 0.0;
   Vector6d prior_;
   Vector6d sides_;
-  Matrix6d information_;
   double cost_ = 0.0;
 };
 
@@ -130,7 +125,7 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
   return planes;
 }
 
-std::optional<FittedBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid) {
+std::optional<UprightBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid) {
   if (planes.size() < kFewestPlanes) {
     return std::nullopt;
   }

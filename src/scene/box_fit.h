@@ -32,14 +32,13 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
 // the half extents h_i is linear in c and h:
 //   max n . x = n . c + sum_i |n . a_i| h_i.
 // So for each rotation about z, c and h follow from linear least squares of the distances in the
-// images, with Cauchy's loss, and the best rotation is searched. What few planes tell is near
-// `ellipsoid` (in the same frame), whose box is the prior. Nothing if the planes fit the ellipsoid
-// better than any box, so that the object is round, or if they are too few.
-struct FittedBox {
-  Rigid3 frame_from_box;  // the origin is the centre of the box
-  Eigen::Vector3d half_extents;
-  Eigen::Vector3d sigma;  // standard deviations of the half extents, m
-};
-std::optional<FittedBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid);
+// images, with Cauchy's loss, and the best rotation is searched (`world_from_box` is in the frame).
+// What few planes tell is near `ellipsoid` (in the same frame), whose box is the prior. Nothing if
+// the planes fit the ellipsoid better than any box, so that the object is round, or if they are too
+// few.
+//
+// In the last step a plane that cuts the box has an eighth of the weight of one beyond it, because
+// a thing such as a chair is smaller than its box in most directions.
+std::optional<UprightBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid);
 
 }  // namespace hullslam

@@ -91,12 +91,11 @@ Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& 
       bodies.back().height_sigma = std::sqrt(up.up->dot(object.covariance->center * *up.up));
     }
     if (up.up) {
-      const std::optional<FittedBox> box =
+      const std::optional<UprightBox> box =
           FitBox(SupportPlanesOf(report.camera, object.ellipsoid, observations, upright_from_world),
                  bodies.back().ellipsoid);
-      object.box =
-          box ? UprightBox{world_from_upright * box->frame_from_box, box->half_extents, box->sigma}
-              : BoxOf(bodies.back(), upright_from_world);
+      object.box = box ? UprightBox{world_from_upright * box->world_from_box, box->half_extents}
+                       : BoxOf(bodies.back(), upright_from_world);
     }
   }
   const ObservationStatistics observations = CollectObservationStatistics(map, report.camera);

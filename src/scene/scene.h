@@ -22,8 +22,6 @@ namespace hullslam {
 struct UprightBox {
   Rigid3 world_from_box;  // the origin is the centre of the box
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
-  // Their standard deviations, m; absent if the box is only the one around a round object.
-  std::optional<Eigen::Vector3d> sigma = {};
 };
 
 // How well the shape of an object is known.

@@ -123,6 +123,19 @@ std::vector<NamedSetting> CameraSettings(const PinholeCamera& camera) {
   return settings;
 }
 
+std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options) {
+  const DepthOptions& depth = options.depth;
+  std::vector<NamedSetting> settings = {
+      {"Camera.readout_time", fmt::format("{}", options.readout_time)},
+      {"depth.disparity_offset", fmt::format("{}", depth.disparity_offset)},
+      {"depth.time_offset", fmt::format("{}", depth.time_offset)}};
+  for (size_t i = 0; i < depth.pose.size(); ++i) {
+    settings.push_back({fmt::format("depth.{}_{}", i < 3 ? "turn" : "shift", "xyz"[i % 3]),
+                        fmt::format("{}", depth.pose.at(i))});
+  }
+  return settings;
+}
+
 std::vector<NamedSetting> RightCameraSettings(const StereoCalibration& pair) {
   if (pair.right.lens != pair.left.lens) {
     throw InputError(

@@ -7,6 +7,7 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/stereo_rectifier.h"
+#include "hullslam/system/options.h"
 
 namespace hullslam {
 
@@ -28,6 +29,8 @@ struct NamedSetting {
 };
 // All settings of a camera.
 std::vector<NamedSetting> CameraSettings(const PinholeCamera& camera);
+// The settings of what is not in the camera itself: the times of rows, and depth images.
+std::vector<NamedSetting> ImageTimeSettings(const SystemOptions& options);
 // The settings of the right camera of a pair, in the form of ORB-SLAM3. Throws InputError if both
 // cameras have different models of the lens.
 std::vector<NamedSetting> RightCameraSettings(const StereoCalibration& pair);
