@@ -23,6 +23,10 @@ constexpr double kLeastSide = 0.01;   // of the mean half axis of the ellipsoid
 constexpr double kPriorShare = 0.5;
 // The weight of a plane beyond the box, relative to that of one that cuts it.
 constexpr double kBeyond = 8.0;
+// The cost of a box relative to that of the ellipsoid, until it is taken: for a box without
+// thickness, which lines that contradict one another give, too, and for others.
+constexpr double kFlatShare = 0.25;
+constexpr double kBoxShare = 0.7;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -64,6 +68,7 @@ class Fit {
   }
 
   double cost() const { return cost_; }
+  bool IsFlat() const { return sides_.tail<3>().minCoeff() <= least_; }
 
   UprightBox Box() const { return {Rigid3(rotation_, sides_.head<3>()), sides_.tail<3>()}; }
 
@@ -157,10 +162,11 @@ std::optional<UprightBox> FitBox(std::span<const SupportPlane> planes, const Ell
       }
     }
   }
-  if (least >= round_cost) {
+  const Fit fit(planes, ellipsoid, scale, kStep * best, kBeyond);
+  if (least >= (fit.IsFlat() ? kFlatShare : kBoxShare) * round_cost) {
     return std::nullopt;
   }
-  return Fit(planes, ellipsoid, scale, kStep * best, kBeyond).Box();
+  return fit.Box();
 }
 
 }  // namespace hullslam

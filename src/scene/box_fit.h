@@ -34,8 +34,8 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
 // So for each rotation about z, c and h follow from linear least squares of the distances in the
 // images, with Cauchy's loss, and the best rotation is searched (`world_from_box` is in the frame).
 // What few planes tell is near `ellipsoid` (in the same frame), whose box is the prior. Nothing if
-// the planes fit the ellipsoid better than any box, so that the object is round, or if they are too
-// few.
+// the planes fit the ellipsoid nearly as well as the best box, so that the object may be round, or
+// if they are too few.
 //
 // In the last step a plane that cuts the box has an eighth of the weight of one beyond it, because
 // a thing such as a chair is smaller than its box in most directions.

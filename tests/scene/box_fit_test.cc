@@ -94,6 +94,14 @@ TEST(FitBox, IsAlmostAroundAThingThatIsNoBox) {
   EXPECT_NEAR(box->half_extents.z(), 0.265, 0.06);
 }
 
+// As of an object that was seen three times, and once wrongly.
+TEST(FitBox, LinesThatContradictOneAnotherGiveNoFlatBox) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> support(-0.2, 0.2);
+  std::vector<SupportPlane> planes = PlanesOf([&](const auto&) { return support(random); });
+  EXPECT_FALSE(FitBox(planes, {Rigid3(), Eigen::Vector3d(0.02, 0.02, 0.02)}));
+}
+
 TEST(FitBox, ARoundThingHasNone) {
   const Ellipsoid ball = {Turned(20.0, {0.3, 0.1, 0.2}), Eigen::Vector3d(0.1, 0.12, 0.08)};
   EXPECT_FALSE(
