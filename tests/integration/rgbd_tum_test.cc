@@ -589,7 +589,7 @@ TEST_F(RgbdTumRefuses, OutputThatCannotBeWritten) {
 
 // trajectory.txt is smaller than the limit, but map.ply is larger. No former file may be replaced.
 TEST_F(RgbdTumRefuses, FilesThatMayNotGrow) {
-  ExpectRefusal({path_, "--quiet"}, {(output_ / "map.ply").string(), "cannot be written"},
+  ExpectRefusal({path_, "--quiet"}, {(output_ / "settings.yaml").string(), "cannot be written"},
                 "ulimit -f 4; ");
 }
 
