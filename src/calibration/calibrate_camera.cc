@@ -49,10 +49,12 @@ CameraCalibrationResult CalibrateCamera(const CalibrationProblem& problem, const
                                         const CameraCalibrationOptions& options) {
   CameraAdjustment fixed(problem, given, {});
   fixed.Solve({});
-  CalibrationProblem weighted = fixed.problem();
-  weighted.disparity_sigma = fixed.DisparitySigma();
-  fixed = CameraAdjustment(std::move(weighted), given, {});
-  fixed.Solve({});
+  if (problem.has_depth) {  // what its disparities are worth
+    CalibrationProblem weighted = fixed.problem();
+    weighted.disparity_sigma = fixed.DisparitySigma();
+    fixed = CameraAdjustment(std::move(weighted), given, {});
+    fixed.Solve({});
+  }
   CameraModel start = given;
   std::vector<CameraParameter> parameters =
       ParametersOf(given, options.choice, problem.has_depth, MedianSpeed(problem, given));

@@ -291,7 +291,7 @@ SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, c
                                .raw = sensor.camera.Distort(pixel),
                                .sigma = sensor.depth_error.pixel_sigma *
                                         static_cast<double>(sensor.levels.scale[level]),
-                               .disparity = depth > 0.0 && (slope || frame.depth.empty())
+                               .disparity = depth > 0.0 && (slope || sensor.IsStereo())
                                                 ? sensor.camera.bf / depth + model.disparity_offset
                                                 : 0.0,
                                .slope = slope.value_or(Eigen::Vector2d::Zero()),

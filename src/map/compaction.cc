@@ -75,6 +75,7 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
   auto reduced = std::make_shared<Frame>();
   reduced->id = frame.id;
   reduced->timestamp = frame.timestamp;
+  reduced->depth_delay = frame.depth_delay;
   reduced->features = SelectKeypoints(frame.features, keypoints);
   for (const uint32_t keypoint : keypoints) {
     if (!frame.words.empty()) {
@@ -86,6 +87,7 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
     shutter->velocity = frame.shutter->velocity;
     for (const uint32_t keypoint : keypoints) {
       shutter->inverse_depths.push_back(frame.shutter->inverse_depths.at(keypoint));
+      shutter->depths.push_back(frame.shutter->depths.at(keypoint));
     }
     reduced->shutter = std::move(shutter);
   }

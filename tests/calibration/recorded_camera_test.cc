@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "frame/rolling_shutter.h"
@@ -69,7 +70,13 @@ TEST(MakeProblem, HasTheFramesBetweenKeyframes) {
 // A map has depths without the offset; what was measured has it.
 TEST(MakeProblem, DisparitiesAreThoseThatWereMeasured) {
   const SyntheticWorld world({}, SyntheticSensor());
-  const SyntheticMap made = MakeSyntheticMap(world, {5, 10, 15, 20});
+  // Depths only count where the slope of the surface is known.
+  const cv::Mat wall(world.sensor().camera.height, world.sensor().camera.width, CV_16UC1,
+                     cv::Scalar(2000));
+  const SyntheticMap made =
+      MakeSyntheticMap(world, {5, 10, 15, 20},
+                       [&](Frame& frame, const Rigid3&) { frame.depth = DepthGrid(wall, 1000.0); });
+  const SyntheticMap without_image = MakeSyntheticMap(world, {5, 10, 15, 20});
   const auto problem_with = [&](double offset) {
     return MakeProblem(made.map, world.sensor(),
                        ModelOf(world.sensor(), {.disparity_offset = offset}), PathOf(world, 30));
@@ -86,6 +93,11 @@ TEST(MakeProblem, DisparitiesAreThoseThatWereMeasured) {
     }
   }
   EXPECT_GT(known, 100U);
+  for (const auto& seen : MakeProblem(without_image.map, world.sensor(),
+                                      ModelOf(world.sensor(), {}), PathOf(world, 30))
+                              .observations) {
+    EXPECT_EQ(seen.front().disparity, 0.0);
+  }
 }
 
 // Single photographs have no velocity, but a lens.

@@ -200,12 +200,14 @@ TEST(ReducedFrame, KeepsHowTheShutterOfItsKeypointsWasCorrected) {
   auto shutter = std::make_shared<ShutterMotion>();
   shutter->velocity.linear = {1.0, 2.0, 3.0};
   shutter->inverse_depths = {0.1, 0.2, 0.3};
+  shutter->depths = {10.0F, 5.0F, 3.0F};
   frame.shutter = shutter;
   const std::vector<uint32_t> kept = {0, 2};
   const auto reduced = ReduceFrame(frame, kept, {});
   ASSERT_NE(reduced->shutter, nullptr);
   EXPECT_EQ(reduced->shutter->velocity.linear, shutter->velocity.linear);
   EXPECT_EQ(reduced->shutter->inverse_depths, (std::vector<double>{0.1, 0.3}));
+  EXPECT_EQ(reduced->shutter->depths, (std::vector<float>{10.0F, 3.0F}));
 }
 
 TEST(ReducedFrame, CanHaveNoKeypoints) {
