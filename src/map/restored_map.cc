@@ -116,7 +116,7 @@ void CheckReferences(const MapTables& tables) {
 
 void CheckWords(const MapTables& tables, const Vocabulary& vocabulary) {
   tables.keyframes.ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    for (const WordId word : keyframe.frame->words) {
+    for (const WordId word : keyframe.frame->words.get()) {
       Require(word.value < vocabulary.word_count(), id, "has a word that is not in the vocabulary");
     }
   });

@@ -162,7 +162,8 @@ BuiltFrame System::Build(const ImageInput& image) {
   for (const auto* const masks : {&image.masks, &image.right_masks}) {
     ValidateMasks(*masks, options_.camera.width, options_.camera.height);
   }
-  BuiltFrame built = frame_builder_->Build(image, *runner_, awaits_masks_);
+  BuiltFrame built =
+      frame_builder_->Build(image, *runner_, awaits_masks_, kind_ != PipelineKind::kRealtime);
   FitDepthError(image);
   return built;
 }
