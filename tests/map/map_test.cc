@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 #include "support/made_vocabulary.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"

@@ -17,7 +17,7 @@
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/restored_map.h"
+#include "map_files/restored_map.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 
 namespace hullslam {
 namespace {
