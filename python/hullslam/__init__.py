@@ -16,8 +16,8 @@ except ImportError as error:
     raise ImportError(f"hullslam needs numpy, which {sys.executable} does not have: install python3-numpy "
                       "and use /usr/bin/python3") from error
 
-from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, MaskFiles, Masks,
-                    Run, SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
+from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapEvent, MapObject, MaskFiles,
+                    Masks, Run, SeenObject, Segmenter, SequenceFrame, System, TrackResult, Trajectory,
                     TrajectoryErrors, __version__, default_settings, evaluate_trajectory, export,
                     open_euroc, open_icl, open_images, open_masks, open_run, open_stored_images, open_tum,
                     preset_names, read_map, read_trajectory, report, scene)
@@ -29,8 +29,8 @@ InputError.__doc__ = """A file, a setting or an argument is wrong.
 The message names the file and line, or the argument and its value, and says what was expected.
 """
 
-__all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles",
-           "Masks", "Run", "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System",
+__all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapEvent", "MapObject",
+           "MaskFiles", "Masks", "Run", "SeenObject", "Segmenter", "SequenceFrame", "Settings", "System",
            "TrackResult", "Trajectory", "TrajectoryErrors", "__version__", "default_settings",
            "evaluate_trajectory", "export", "open", "open_euroc", "open_icl", "open_images", "open_masks",
            "open_run", "open_stored_images", "open_tum", "preset_names", "read_map",

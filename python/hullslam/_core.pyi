@@ -383,6 +383,29 @@ class SeenObject:
     def box(self) -> _Doubles:
         """(4,) least x and y and largest x and y of the hull, undistorted px."""
 
+class MapEvent:
+    """What happened to the camera or to the map."""
+    @property
+    def kind(self) -> str:
+        """'lost', 'relocalised', 'island_begun', 'island_joined', 'loop_closed', 'rescaled',
+        'adjusted', 'object_born', 'object_fused', 'object_moved' or 'object_gone'.
+        """
+    @property
+    def object(self) -> int | None:
+        """The id of the object (MapObject.id), or None."""
+    @property
+    def kept(self) -> int | None:
+        """The id of the object that it was fused with, or None."""
+    @property
+    def mean_moved(self) -> float:
+        """The mean distance by which a correction has moved keyframes, m."""
+    @property
+    def most_moved(self) -> float:
+        """The largest such distance, or that by which an object has moved, m."""
+    @property
+    def scale(self) -> float:
+        """The factor by which lengths in the map have grown."""
+
 class TrackResult:
     """What track() found in one frame."""
     @property
@@ -417,6 +440,9 @@ class TrackResult:
         keypoint, its index; landmark, its id in the map before this frame; pixel
         (2,), undistorted.
         """
+    @property
+    def events(self) -> list[MapEvent]:
+        """What has happened since the frame before: list of MapEvent."""
     @property
     def objects(self) -> list[SeenObject]:
         """The objects that masks show in this frame: list of SeenObject."""

@@ -28,6 +28,10 @@ struct SeenObject {
   std::optional<int64_t> object;
 };
 
+std::optional<int64_t> NumberOrNone(ObjectId id) {
+  return id.IsValid() ? std::optional(ToNumber(id)) : std::nullopt;
+}
+
 py::object IfTracked(const FrameReport& report, const Rigid3& pose) {
   return report.tracked.state == TrackingState::kTracked ? py::object(ToArray(pose))
                                                          : py::object(py::none());
@@ -49,9 +53,8 @@ py::array_t<MatchRow> MatchesOf(const FrameReport& report) {
 std::vector<SeenObject> SeenObjectsOf(const FrameReport& report) {
   std::vector<SeenObject> objects;
   for (size_t i = 0; i < report.frame->detections.size(); ++i) {
-    const bool is_mapped = i < report.objects.size() && report.objects[i].IsValid();
-    objects.push_back({report.frame->detections[i],
-                       is_mapped ? std::optional(ToNumber(report.objects[i])) : std::nullopt});
+    const ObjectId object = i < report.objects.size() ? report.objects[i] : ObjectId();
+    objects.push_back({report.frame->detections[i], NumberOrNone(object)});
   }
   return objects;
 }
@@ -79,6 +82,25 @@ void BindTrackResult(py::module_& module) {
           "(points, 2) convex hull of the mask, undistorted pixels.")
       .def_property_readonly("box", &BoxOf,
                              "(4,) least x and y and largest x and y of the hull, undistorted px.");
+  py::class_<MapEvent>(module, "MapEvent", "What happened to the camera or to the map.")
+      .def_property_readonly(
+          "kind", [](const MapEvent& e) { return ToString(e.kind); },
+          "'lost', 'relocalised', 'island_begun', 'island_joined', 'loop_closed', 'rescaled',\n"
+          "'adjusted', 'object_born', 'object_fused', 'object_moved' or 'object_gone'.")
+      .def_property_readonly(
+          "object", [](const MapEvent& e) { return NumberOrNone(e.object); },
+          "The id of the object (MapObject.id), or None.")
+      .def_property_readonly(
+          "kept", [](const MapEvent& e) { return NumberOrNone(e.kept); },
+          "The id of the object that it was fused with, or None.")
+      .def_readonly("mean_moved", &MapEvent::mean_moved,
+                    "The mean distance by which a correction has moved keyframes, m.")
+      .def_readonly("most_moved", &MapEvent::most_moved,
+                    "The largest such distance, or that by which an object has moved, m.")
+      .def_readonly("scale", &MapEvent::scale, "The factor by which lengths in the map have grown.")
+      .def("__repr__", [](const MapEvent& e) {
+        return "<hullslam.MapEvent " + std::string(ToString(e.kind)) + ">";
+      });
   py::class_<FrameReport>(module, "TrackResult", "What track() found in one frame.")
       .def_property_readonly(
           "state", [](const FrameReport& r) { return ToString(r.tracked.state); },
@@ -111,6 +133,8 @@ void BindTrackResult(py::module_& module) {
           "Structured array (N,) of the keypoints that show a landmark:\n"
           "keypoint, its index; landmark, its id in the map before this frame; pixel\n"
           "(2,), undistorted.")
+      .def_readonly("events", &FrameReport::events,
+                    "What has happened since the frame before: list of MapEvent.")
       .def_property_readonly("objects", &SeenObjectsOf,
                              "The objects that masks show in this frame: list of SeenObject.")
       .def("__repr__", [](const FrameReport& r) {

@@ -53,19 +53,6 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
   });
 }
 
-std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descriptor> descriptors,
-                            TaskRunner& runner) {
-  constexpr size_t kInTask = 256;
-  std::vector<WordId> words(descriptors.size());
-  runner.Run((words.size() + kInTask - 1) / kInTask, [&](size_t task) {
-    const size_t begin = task * kInTask;
-    const size_t count = std::min(kInTask, words.size() - begin);
-    std::ranges::copy(vocabulary.WordsOf(descriptors.subspan(begin, count)),
-                      words.begin() + static_cast<std::ptrdiff_t>(begin));
-  });
-  return words;
-}
-
 // The pixels that are 0 in the mask of all images, and those beyond the largest angle of a wide
 // lens; empty if there are none.
 cv::Mat UnusedPixels(const PinholeCamera& camera, const cv::Mat& mask_all) {
@@ -123,14 +110,15 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
   }
 }
 
-BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks) {
+BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks,
+                               bool finds_words) {
   CheckGreyImage("image", image.grey, sensor_.camera);
   source_->CheckImages(image);
   check_.CheckDepth(image.depth);
   const bool is_fitted =
       image.depth.size() == image.grey.size() && depth_.disparity_offset == 0.0 && !registration_;
   if (image.depth.empty() || is_fitted) {
-    return BuildFitted(image, runner, awaits_masks);
+    return BuildFitted(image, runner, awaits_masks, finds_words);
   }
   ImageInput fitted = image;
   fitted.depth =
@@ -139,19 +127,25 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner, bool
   if (registration_) {
     fitted.depth = registration_->Register(fitted.depth, depth_.units_per_metre);
   }
-  return BuildFitted(fitted, runner, awaits_masks);
+  return BuildFitted(fitted, runner, awaits_masks, finds_words);
 }
 
-BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner,
-                                     bool awaits_masks) {
+BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks,
+                                     bool finds_words) {
   using Clock = std::chrono::steady_clock;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   built.frame->depth_delay = image.depth_delay;
   DetectionInput input;
   input.keypoints = AddFeatures(image, runner, built.frame->features);
-  if (vocabulary_ != nullptr) {
-    built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
+  if (vocabulary_ != nullptr && built.frame->features.size() > 0) {
+    built.frame->words =
+        FrameWords([vocabulary = vocabulary_, descriptors = built.frame->features.descriptors] {
+          return vocabulary->WordsOf(descriptors);
+        });
+    if (finds_words) {
+      built.frame->words.get();
+    }
   }
   built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
   const bool is_awaiting = awaits_masks && detector_ && image.masks.empty();

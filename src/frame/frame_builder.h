@@ -41,7 +41,9 @@ class FrameBuilder {
   // allows, if the sensor has another image than a depth or a right image, or if InputCheck refuses
   // the images. The masks must pass ValidateMasks().
   // If a frame without masks `awaits_masks`, it keeps what AddDetections() needs.
-  BuiltFrame Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks = false);
+  // Words are looked up at once if `finds_words`, else when they are first asked for.
+  BuiltFrame Build(const ImageInput& image, TaskRunner& runner, bool awaits_masks = false,
+                   bool finds_words = true);
 
   // Messages for the user about input that can be used, but hardly is what was meant (InputCheck).
   // May be called by another thread.
@@ -59,7 +61,8 @@ class FrameBuilder {
 
  private:
   // `image` has depth of its own size.
-  BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks);
+  BuiltFrame BuildFitted(const ImageInput& image, TaskRunner& runner, bool awaits_masks,
+                         bool finds_words);
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);

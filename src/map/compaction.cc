@@ -77,10 +77,12 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
   reduced->timestamp = frame.timestamp;
   reduced->depth_delay = frame.depth_delay;
   reduced->features = SelectKeypoints(frame.features, keypoints);
-  for (const uint32_t keypoint : keypoints) {
-    if (!frame.words.empty()) {
-      reduced->words.push_back(frame.words.at(keypoint));
+  if (const std::vector<WordId>& words = frame.words.get(); !words.empty()) {
+    std::vector<WordId> kept;
+    for (const uint32_t keypoint : keypoints) {
+      kept.push_back(words.at(keypoint));
     }
+    reduced->words = std::move(kept);
   }
   if (frame.shutter != nullptr) {
     auto shutter = std::make_shared<ShutterMotion>();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "util/lists.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -176,16 +176,15 @@ std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count) {
 }
 
 std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes) {
-  std::vector<LandmarkId> landmarks;
+  IdSet<LandmarkId> observed;
   for (const KeyframeId id : keyframes) {
     for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
       if (landmark.IsValid()) {
-        landmarks.push_back(landmark);
+        observed.Insert(landmark);
       }
     }
   }
-  SortUnique(landmarks);
-  return landmarks;
+  return observed.Sorted();
 }
 
 }  // namespace hullslam

@@ -14,6 +14,9 @@ namespace {
 HULLSLAM_FUNCTION_CLONES
 size_t MostTypical(std::span<const Descriptor> descriptors) {
   const size_t n = descriptors.size();
+  if (n <= 2) {
+    return 0;  // the median of two is the distance of each from itself
+  }
   std::vector<int> distances(n * n, 0);
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = i + 1; j < n; ++j) {

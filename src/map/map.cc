@@ -81,7 +81,7 @@ Map Map::Snapshot() {
 }
 
 BowVector Map::VectorOf(const Frame& frame) const {
-  return vocabulary_ != nullptr ? vocabulary_->VectorOf(frame.words) : BowVector();
+  return vocabulary_ != nullptr ? vocabulary_->VectorOf(frame.words.get()) : BowVector();
 }
 
 void Map::BeginSession(Session session) {
@@ -102,7 +102,7 @@ KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& ca
                             IslandId island) {
   Check(island.IsValid(), "a keyframe belongs to an island");
   Check(frame != nullptr, "a keyframe needs a frame");
-  Check(frame->words.empty() || frame->words.size() == frame->features.size(),
+  Check(frame->words.empty() || frame->words.get().size() == frame->features.size(),
         "the frame does not have one word per keypoint");
   Keyframe keyframe;
   keyframe.landmarks.resize(frame->features.size());

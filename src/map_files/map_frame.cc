@@ -10,7 +10,7 @@ namespace hullslam {
 
 void WriteWords(const Frame& frame, ByteWriter& out) {
   out.PutFlag(!frame.words.empty());
-  for (const WordId word : frame.words) {
+  for (const WordId word : frame.words.get()) {
     out.Put(word.value);
   }
 }
@@ -21,10 +21,12 @@ void ReadWords(Frame& frame, ByteReader& in) {
   }
   in.Require(frame.features.size() <= in.left() / sizeof(uint32_t),
              "has fewer words than keypoints");
-  frame.words.reserve(frame.features.size());
+  std::vector<WordId> words;
+  words.reserve(frame.features.size());
   for (size_t i = 0; i < frame.features.size(); ++i) {
-    frame.words.push_back(WordId(in.Get<uint32_t>()));
+    words.emplace_back(in.Get<uint32_t>());
   }
+  frame.words = std::move(words);
 }
 
 namespace {

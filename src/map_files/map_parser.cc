@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "map/restored_map.h"
 #include "map_files/map_records.h"
+#include "map_files/restored_map.h"
 
 namespace hullslam {
 namespace {

@@ -14,7 +14,8 @@
 #include "hullslam/map_files/map_file.h"
 
 // The parts of a map file (docs/maps.md). For each part there is a function that writes it and one
-// that reads and checks it. The relations between the parts are checked in map/restored_map.h.
+// that reads and checks it. The relations between the parts are checked in
+// map_files/restored_map.h.
 namespace hullslam {
 
 // No length, time or pixel of a map is larger. Poses are at most at kMostMetres
@@ -49,7 +50,7 @@ void WriteDetection(const Detection& detection, ByteWriter& out);
 Detection ReadDetection(size_t keypoints, ByteReader& in);
 
 // In map_frame.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
-// of the vocabulary is checked in map/restored_map.h.
+// of the vocabulary is checked in map_files/restored_map.h.
 void WriteWords(const Frame& frame, ByteWriter& out);
 void ReadWords(Frame& frame, ByteReader& in);
 

@@ -70,13 +70,13 @@ std::vector<FoundLandmark> MatchLandmarksByWords(const Map& map, const Frame& fr
                                                  const std::vector<uint8_t>& is_asked) {
   const Vocabulary& vocabulary = *map.vocabulary();
   const Keyframe& known = map.keyframes().At(keyframe);
-  std::vector<VocabularyNodeId> asked = vocabulary.NodesOf(frame.words, kNodeLevel);
+  std::vector<VocabularyNodeId> asked = vocabulary.NodesOf(frame.words.get(), kNodeLevel);
   for (size_t i = 0; i < is_asked.size(); ++i) {
     if (is_asked[i] == 0) {
       asked[i] = VocabularyNodeId();
     }
   }
-  std::vector<VocabularyNodeId> nodes = vocabulary.NodesOf(known.frame->words, kNodeLevel);
+  std::vector<VocabularyNodeId> nodes = vocabulary.NodesOf(known.frame->words.get(), kNodeLevel);
   for (size_t i = 0; i < nodes.size(); ++i) {
     if (!known.landmarks[i].IsValid()) {
       nodes[i] = VocabularyNodeId();
@@ -113,7 +113,7 @@ std::vector<KeyframeId> KeyframesForWideMatches(const Map& map, const Frame& fra
       after = by_frame.After(after);
     }
   }
-  if (map.vocabulary() != nullptr && !frame.words.empty()) {
+  if (map.vocabulary() != nullptr && !frame.words.is_absent()) {
     const size_t most = chosen.size() + kSimilar;
     for (const SimilarKeyframe& similar : map.index().Query(map.VectorOf(frame))) {
       add(similar.keyframe, most);

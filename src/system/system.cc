@@ -83,6 +83,22 @@ void RequireSameVocabulary(const Map& map, const Vocabulary* expected) {
   }
 }
 
+// Adds whether the camera was lost or found with this frame. `former` are the frames before it. A
+// new island is a new begin, and not a place that is found again.
+void AddEventsOfCamera(std::span<const TrackedFrame> former, FrameReport& report) {
+  const TrackingState before =
+      former.empty() ? TrackingState::kNotInitialized : former.back().state;
+  const TrackingState now = report.tracked.state;
+  std::vector<MapEvent>& events = report.events;
+  if (before == TrackingState::kTracked && now == TrackingState::kLost) {
+    events.push_back({.kind = MapEventKind::kLost});
+  } else if (before == TrackingState::kLost && now == TrackingState::kTracked &&
+             std::ranges::find(events, MapEventKind::kIslandBegun, &MapEvent::kind) ==
+                 events.end()) {
+    events.push_back({.kind = MapEventKind::kRelocalised});
+  }
+}
+
 // Sets a flag during its lifetime.
 class ScopedFlag {
  public:
@@ -104,7 +120,8 @@ System::System(const SystemOptions& options, PipelineKind kind, SystemStart star
       sensor_(MakeSensor(options_)),
       frame_builder_(MakeFrameBuilder(sensor_, options_)),
       pipeline_(BeginPipeline()),
-      runner_(MakeRunner()) {}
+      runner_(MakeRunner()),
+      known_map_(map()) {}
 
 System::~System() = default;
 
@@ -145,7 +162,8 @@ BuiltFrame System::Build(const ImageInput& image) {
   for (const auto* const masks : {&image.masks, &image.right_masks}) {
     ValidateMasks(*masks, options_.camera.width, options_.camera.height);
   }
-  BuiltFrame built = frame_builder_->Build(image, *runner_, awaits_masks_);
+  BuiltFrame built =
+      frame_builder_->Build(image, *runner_, awaits_masks_, kind_ != PipelineKind::kRealtime);
   FitDepthError(image);
   return built;
 }
@@ -179,10 +197,12 @@ TrackedFrame System::Track(BuiltFrame built) {
   times_.Add("frame", built.milliseconds);
   mask_counts_.Add(built.masks);
   pipeline_->KeepIdsSince(OldestRevision());
-  const FrameReport report = [&] {
+  FrameReport report = [&] {
     const ScopedFlag flag(is_tracking_);
     return pipeline_->Track(std::move(built.frame));
   }();
+  report.events = TakeEvents();
+  AddEventsOfCamera(frames_.all(), report);
   if (kind_ == PipelineKind::kRealtime) {
     times_.Add("track", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() -
                                                                   built.begin)
@@ -198,6 +218,17 @@ TrackedFrame System::Track(BuiltFrame built) {
     frame_callback_(report);
   }
   return frames_.back();
+}
+
+// The events of the map since the last call.
+std::vector<MapEvent> System::TakeEvents() {
+  static const Map kNoMap;
+  std::shared_ptr<const Map> newest = map();
+  if (newest == known_map_) {
+    return {};
+  }
+  const std::shared_ptr<const Map> before = std::exchange(known_map_, std::move(newest));
+  return EventsBetween(before != nullptr ? *before : kNoMap, *known_map_);
 }
 
 void System::AwaitMasks(bool is_on) {
@@ -319,6 +350,7 @@ void System::Finish(const Cancellation* cancellation, const ProgressCallback& on
     left_islands_ = std::move(left);
   }
   remembered_.clear();
+  events_at_end_ = TakeEvents();
 }
 
 void System::Reset() {
@@ -331,6 +363,8 @@ void System::Reset() {
   frames_.clear();
   remembered_.clear();
   left_islands_.clear();
+  known_map_ = map();
+  events_at_end_.clear();
   times_ = {};
 }
 

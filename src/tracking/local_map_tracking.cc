@@ -77,20 +77,6 @@ void AddNeighbours(const Map& map, KeyframeSet& set) {
   }
 }
 
-// The same as ObservedLandmarks, but with a bit set instead of sorting, which is faster for the 80
-// keyframes of a local map.
-std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  IdSet<LandmarkId> local;
-  for (const KeyframeId id : keyframes) {
-    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
-      if (landmark.IsValid()) {
-        local.Insert(landmark);
-      }
-    }
-  }
-  return local.Sorted();
-}
-
 }  // namespace
 
 LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
@@ -108,7 +94,7 @@ LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
   local.reference = observers.front().keyframe;
   local.keyframes = set.members();
   std::sort(local.keyframes.begin(), local.keyframes.end());
-  local.landmarks = LandmarksOf(map, local.keyframes);
+  local.landmarks = ObservedLandmarks(map, local.keyframes);
   return local;
 }
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -16,38 +15,64 @@
 
 namespace hullslam {
 
-// A hash table from ids to values. Its size depends only on the number of its entries, not on the
-// number of ids in the map. The entries are in the order in which they were added, so the same
-// calls give the same results.
+// A hash table from ids to values, with open addressing. Its size depends only on the number of its
+// entries, not on the number of ids in the map. The entries are in the order in which they were
+// added, so the same calls give the same results.
 template <typename IdType, typename Value>
 class IdMap {
  public:
   // The value of an id. A new value is added if there is none. The reference is valid until the
   // next value is added.
   Value& operator[](IdType id) {
-    const auto [it, is_new] = indices_.try_emplace(id, entries_.size());
-    if (is_new) {
+    if (2 * (entries_.size() + 1) > places_.size()) {
+      Grow();
+    }
+    uint32_t& place = places_[PlaceOf(id)];
+    if (place == kFree) {
+      place = static_cast<uint32_t>(entries_.size());
       entries_.emplace_back(id, Value());
     }
-    return entries_[it->second].second;
+    return entries_[place].second;
   }
 
   // Null if the id has no value.
   const Value* Find(IdType id) const {
-    const auto it = indices_.find(id);
-    return it != indices_.end() ? &entries_[it->second].second : nullptr;
+    const uint32_t place = places_.empty() ? kFree : places_[PlaceOf(id)];
+    return place != kFree ? &entries_[place].second : nullptr;
   }
 
   const std::vector<std::pair<IdType, Value>>& entries() const { return entries_; }
 
   // Returns all entries and leaves the table empty.
   std::vector<std::pair<IdType, Value>> Take() {
-    indices_.clear();
+    places_.clear();
     return std::exchange(entries_, {});
   }
 
  private:
-  std::unordered_map<IdType, size_t> indices_;  // indices into entries_
+  static constexpr uint32_t kFree = UINT32_MAX;
+
+  // Where the id is in places_, or where it should be put: the first place from its hash on that
+  // has this id or is free. The factor is 2^32 over the golden ratio (Knuth, The Art of Computer
+  // Programming 3, 6.4).
+  size_t PlaceOf(IdType id) const {
+    const size_t mask = places_.size() - 1;
+    size_t place = ((id.value * uint32_t{2654435769}) >> 7) & mask;
+    while (places_[place] != kFree && !(entries_[places_[place]].first == id)) {
+      place = (place + 1) & mask;
+    }
+    return place;
+  }
+
+  void Grow() {
+    places_.assign(std::max<size_t>(16, 2 * places_.size()), kFree);
+    for (uint32_t i = 0; i < entries_.size(); ++i) {
+      places_[PlaceOf(entries_[i].first)] = i;
+    }
+  }
+
+  std::vector<uint32_t>
+      places_;  // indices into entries_; as many as a power of two, half of them free
   std::vector<std::pair<IdType, Value>> entries_;
 };
 

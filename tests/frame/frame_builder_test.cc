@@ -248,7 +248,11 @@ TEST_F(FrameBuilderTest, HasOneWordPerKeypointWithAVocabulary) {
   FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), std::nullopt, {}, vocabulary);
   const auto frame = builder.Build(MakeImage(), runner_).frame;
   ASSERT_GT(frame->features.size(), 100u);
-  EXPECT_EQ(frame->words, vocabulary->WordsOf(frame->features.descriptors));
+  const std::vector<WordId> expected = vocabulary->WordsOf(frame->features.descriptors);
+  EXPECT_EQ(frame->words.get(), expected);
+  const auto later = builder.Build(MakeImage(), runner_, false, false).frame;
+  EXPECT_FALSE(later->words.is_absent());
+  EXPECT_EQ(later->words.get(), expected);
 }
 
 TEST_F(FrameBuilderTest, KeypointsAreUndistorted) {

@@ -9,9 +9,9 @@
 
 #include "loop/ring_islands.h"
 #include "map/correction.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "support/ring_world.h"
 
 namespace hullslam {

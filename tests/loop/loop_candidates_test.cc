@@ -8,8 +8,8 @@
 
 #include "loop/ring_things.h"
 #include "map/correction.h"
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
+#include "map_files/invariants.h"
 #include "places/made_places.h"
 #include "support/ring_world.h"
 

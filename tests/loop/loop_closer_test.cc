@@ -11,10 +11,10 @@
 #include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "map/correction.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 
 namespace hullslam {
 namespace {

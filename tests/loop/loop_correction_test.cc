@@ -10,9 +10,9 @@
 #include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "map/correction.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "frame/rolling_shutter.h"
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 
 namespace hullslam {
 namespace {

@@ -16,7 +16,6 @@
 
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
@@ -24,6 +23,7 @@
 #include "map/made_correction.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"

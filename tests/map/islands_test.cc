@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 
 namespace hullslam {
 namespace {

@@ -49,10 +49,12 @@ inline KeyframeId AddKeyframe(Map& map, size_t keypoints, size_t with_depth = 0,
   const uint32_t number = kFramesPerKeyframe * map.keyframes().NextId().value;
   const auto frame = MakeFrame(number, keypoints, with_depth);
   if (map.vocabulary() != nullptr) {
+    std::vector<WordId> words;
     for (uint32_t i = 0; i < keypoints; ++i) {
       const auto word_count = static_cast<uint32_t>(map.vocabulary()->word_count());
-      frame->words.push_back(WordId((number + i * i) % word_count));
+      words.emplace_back((number + i * i) % word_count);
     }
+    frame->words = std::move(words);
   }
   return map.AddKeyframe(frame, cam_from_world);
 }

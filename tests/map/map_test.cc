@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 #include "support/made_vocabulary.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
@@ -427,7 +427,7 @@ TEST(MapIndex, FindsKeyframesByTheirWords) {
 TEST(MapIndex, IsEmptyWithoutAVocabulary) {
   Map map;
   const auto frame = MakeFrame(0, 3);
-  frame->words = {WordId(1), WordId(2), WordId(3)};
+  frame->words = std::vector{WordId(1), WordId(2), WordId(3)};
   map.AddKeyframe(frame, {});
   EXPECT_TRUE(map.VectorOf(*frame).empty());
   EXPECT_TRUE(map.index().postings().empty());
@@ -436,9 +436,9 @@ TEST(MapIndex, IsEmptyWithoutAVocabulary) {
 TEST(MapIndex, AFrameHasOneWordPerKeypointOrNone) {
   Map map(SharedVocabulary());
   const auto frame = MakeFrame(0, 3);
-  frame->words = {WordId(1)};
+  frame->words = std::vector{WordId(1)};
   EXPECT_THROW(map.AddKeyframe(frame, {}), CheckError);
-  frame->words.clear();
+  frame->words = {};
   map.AddKeyframe(frame, {});
   EXPECT_TRUE(map.index().postings().empty());
 }

@@ -20,10 +20,10 @@
 #include <vector>
 
 #include "files/read_file.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 #include "map_files/made_map_file.h"
 #include "map_files/map_records.h"
 #include "support/expect_error.h"

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

@@ -7,8 +7,8 @@
 #include <array>
 
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
 #include "map/islands.h"
+#include "map_files/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

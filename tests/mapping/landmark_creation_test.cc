@@ -9,8 +9,8 @@
 #include <map>
 #include <numbers>
 
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
+#include "map_files/invariants.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"
 #include "support/unknown_points.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

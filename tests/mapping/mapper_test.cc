@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "frame/rolling_shutter.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
 #include "support/test_cameras.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "map/invariants.h"
 #include "map/keyframe_graph.h"
+#include "map_files/invariants.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "frame/measure_point.h"
-#include "map/invariants.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "optim/keypoint_weights.h"
 #include "optim/robust.h"
 #include "support/pose_distance.h"

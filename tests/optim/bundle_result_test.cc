@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "map/invariants.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "objects/made_objects.h"
 #include "optim/bundle_adjustment.h"
 #include "support/captured_log.h"

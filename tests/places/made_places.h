@@ -17,9 +17,11 @@ inline Map MakeWordMap() { return Map(SharedVocabulary()); }
 // Adds a keyframe with `landmarks` keypoints, whose words are `words` in turn.
 inline KeyframeId AddWords(Map& map, const std::vector<uint32_t>& words, size_t landmarks = 100) {
   const auto frame = MakeFrame(map.keyframes().NextId().value, landmarks);
+  std::vector<WordId> of_keypoints;
   for (size_t i = 0; i < landmarks; ++i) {
-    frame->words.emplace_back(words[i % words.size()]);
+    of_keypoints.emplace_back(words[i % words.size()]);
   }
+  frame->words = std::move(of_keypoints);
   return map.AddKeyframe(frame, Rigid3());
 }
 

@@ -55,6 +55,10 @@ def test_a_lost_frame_says_why(slam, wall):
     blank = slam.track(np.zeros_like(wall.image(0)), wall.depth, timestamp=0.2)
     assert blank.state == "lost" and blank.reason == "too few features"
     assert blank.cam_from_world is None and blank.world_from_cam is None
+    assert [event.kind for event in blank.events] == ["lost"]
+    again = wall.track(slam, 7, 8)[0]
+    assert [event.kind for event in again.events] == ["relocalised"]
+    assert again.events[0].object is None and again.events[0].scale == 1.0
 
 
 def test_a_monocular_camera_says_why_it_has_no_map(settings, wall):

@@ -14,9 +14,9 @@
 
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/made_map.h"
+#include "map_files/invariants.h"
 #include "support/ring_world.h"
 #include "support/temporary_folder.h"
 #include "system/compose_trajectory.h"

@@ -17,7 +17,7 @@
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"
@@ -878,6 +878,36 @@ TEST(System, TheCallbackGetsAReportOfEachFrame) {
     ASSERT_NE(reports[i].frame, nullptr);
     EXPECT_EQ(reports[i].landmarks.size(), reports[i].frame->features.size());
   }
+}
+
+std::vector<MapEventKind> KindsOf(const std::vector<MapEvent>& events) {
+  std::vector<MapEventKind> kinds;
+  for (const MapEvent& event : events) {
+    kinds.push_back(event.kind);
+  }
+  return kinds;
+}
+
+TEST(System, AReportHasTheEventsOfItsFrame) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  std::vector<MapEventKind> kinds;  // of the newest frame
+  system.SetFrameCallback([&](const FrameReport& report) { kinds = KindsOf(report.events); });
+  for (int i = 0; i < 3; ++i) {
+    TrackFrame(system, i);
+    EXPECT_TRUE(kinds.empty());
+  }
+  const cv::Mat blank(480, 640, CV_8UC1, cv::Scalar(100));
+  system.Track(Time(3), blank, Wall::Depth(3));
+  EXPECT_EQ(kinds, std::vector{MapEventKind::kLost});
+  system.Track(Time(4), blank, Wall::Depth(4));
+  EXPECT_TRUE(kinds.empty()) << "it is still lost";
+  TrackFrame(system, 5);
+  EXPECT_EQ(kinds, std::vector{MapEventKind::kRelocalised});
+  system.Finish();
+  EXPECT_TRUE(system.events_at_end().empty());
+  system.Reset();
+  TrackFrame(system, 0);
+  EXPECT_TRUE(kinds.empty());
 }
 
 TEST(SystemStart, LocalizationNeedsAMap) {

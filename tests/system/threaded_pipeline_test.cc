@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "hullslam/util/check.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 #include "system/pipeline.h"
 #include "system/pipeline_cases.h"
 #include "system/ring_path.h"

@@ -931,7 +931,7 @@ TEST_F(TrackerWithMap, IsLostUntilItSeesAPlaceOfTheMap) {
     const double turns = is_known ? 0.25 + 0.002 * i : kUnknownPlace;
     const std::shared_ptr<Frame> frame = DemandingFrame(i, turns);
     if (i > 12) {
-      frame->words.clear();  // the last frame leads to this one
+      frame->words = {};  // the last frame leads to this one
     }
     const Tracker::Result result = Process(frame);
     EXPECT_EQ(result.report.tracked.state,
@@ -1009,7 +1009,7 @@ TEST_F(RelocalisingTracker, IsFoundElsewhereWithoutWordsByAllDescriptors) {
   LoseTrack();
   EXPECT_FALSE(tracker_.HasWideSteps());
   const auto frame = Look(1010, 0.45);
-  frame->words.clear();
+  frame->words = {};
   const Tracker::Result result = tracker_.Process(frame, map_, kIdle);
   ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
   ExpectNear(result.report.tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.01);
@@ -1027,7 +1027,7 @@ TEST_F(RelocalisingTracker, IsFoundElsewhereByAllDescriptorsWithoutDepthToo) {
   ASSERT_EQ(tracker.Process(Look(1000, 0.2), map_, kIdle).report.tracked.state,
             TrackingState::kTracked);
   const auto frame = Look(1010, 0.45);
-  frame->words.clear();
+  frame->words = {};
   const Tracker::Result result = tracker.Process(frame, map_, kIdle);
   ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
   ExpectNear(result.report.tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.01);
@@ -1040,7 +1040,7 @@ TEST_F(RelocalisingTracker, StaysLostElsewhereWithoutWordsIfItMayNotMatchWidely)
   Tracker tracker(world_.sensor(), options, ObjectOptions(), 1);
   tracker.Process(Look(0, 0.0), nullptr, kIdle);
   const auto frame = Look(1010, 0.45);
-  frame->words.clear();
+  frame->words = {};
   EXPECT_EQ(tracker.Process(frame, map_, kIdle).report.tracked.state, TrackingState::kLost);
   EXPECT_FALSE(tracker.HasHadWideSteps());
 }
@@ -1063,16 +1063,18 @@ TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) 
   const auto frame = Look(1004, 0.45);
   const auto still = Look(1004, 0.0);
   const std::vector<LandmarkId>& known = made_.map.keyframes().At(KeyframeId(0)).landmarks;
+  std::vector<WordId> words = frame->words.get();
   size_t added = 0;
   for (size_t i = 0; i < known.size() && added < kMisleading; ++i) {
     if (known[i].IsValid()) {
       frame->features.keypoints.push_back(still->features.keypoints[i]);
       frame->features.descriptors.push_back(still->features.descriptors[i]);
       frame->features.depth.push_back(still->features.depth[i]);
-      frame->words.push_back(still->words[i]);
+      words.push_back(still->words.get()[i]);
       ++added;
     }
   }
+  frame->words = std::move(words);
   ASSERT_EQ(added, kMisleading);
   RebuildGrid(world_.sensor(), *frame);
   const TrackedFrame tracked = Process(frame);

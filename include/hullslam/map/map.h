@@ -31,7 +31,7 @@ class Map {
   Map() = default;
   // `vocabulary` is the one of the words of all frames. If it is null, the index stays empty.
   explicit Map(std::shared_ptr<const Vocabulary> vocabulary) : vocabulary_(std::move(vocabulary)) {}
-  // A map that was stored. The tables are not checked; map/restored_map.h does this.
+  // A map that was stored. The tables are not checked; map_files/restored_map.h does this.
   explicit Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
   // A copy of the map. The two share memory until one of them is changed.

@@ -14,6 +14,7 @@
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/geometry/sim3.h"
 #include "hullslam/map/keyframe.h"
+#include "hullslam/map/map_events.h"
 #include "hullslam/map/tracking_failure.h"
 #include "hullslam/util/id.h"
 
@@ -160,6 +161,10 @@ struct FrameReport {
   std::optional<InitialisationFailure> failure = std::nullopt;
   // The reason why the frame is lost; absent unless its state is kLost.
   std::optional<TrackingFailure> loss = std::nullopt;
+
+  // What has happened to the camera and the map since the frame before. In the pipelines with
+  // threads, the map may have changed since it tracked this frame.
+  std::vector<MapEvent> events = {};
 
   // The name of `failure` or `loss`, for messages; absent if there is neither.
   std::optional<std::string_view> Reason() const {

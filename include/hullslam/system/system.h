@@ -181,6 +181,8 @@ class System {
   // The islands that were not joined to the map, in the order in which they were begun. Empty
   // before Finish.
   const std::vector<LeftIsland>& left_islands() const { return left_islands_; }
+  // What Finish() has done to the map. Before, each FrameReport has the events of its frame.
+  const std::vector<MapEvent>& events_at_end() const { return events_at_end_; }
   // The number of mapped objects that have a size in ObjectOptions::sizes and could be measured. If
   // there are any, they set the unit of length of a monocular map to the metre.
   size_t sized_objects() const;
@@ -197,6 +199,7 @@ class System {
  private:
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
+  std::vector<MapEvent> TakeEvents();
   void KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input);
   uint32_t OldestRevision() const;
   void FitDepthError(const ImageInput& image);
@@ -228,6 +231,8 @@ class System {
   MappedVector<TrackedFrame> frames_;
   std::list<RememberedFrame> remembered_;  // until Finish, but not all frames of a long run
   std::vector<LeftIsland> left_islands_;
+  std::shared_ptr<const Map> known_map_;  // whose events were told
+  std::vector<MapEvent> events_at_end_;
   StageTimes times_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 // Matches keypoints without a prediction of their pixels. Words save most comparisons.
 std::vector<FoundLandmark> FindByDescriptor(const Map& map, const Frame& frame, KeyframeId id) {
-  if (map.vocabulary() != nullptr && !frame.words.empty()) {
+  if (map.vocabulary() != nullptr && !frame.words.is_absent()) {
     return MatchLandmarksByWords(map, frame, id, {});
   }
   const Keyframe& keyframe = map.keyframes().At(id);

@@ -55,7 +55,7 @@ PoseEstimate SeeWholePlace(const Frame& frame, const Map& map, const TrackingCon
 std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& map,
                                                  const TrackingContext& context,
                                                  const LastFrame& /*last*/) {
-  const bool has_words = map.vocabulary() != nullptr && !frame.words.empty();
+  const bool has_words = map.vocabulary() != nullptr && !frame.words.is_absent();
   if (!context.options.relocalise_by_words || !has_words) {
     return std::nullopt;
   }

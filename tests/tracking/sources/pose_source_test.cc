@@ -129,7 +129,7 @@ TEST_P(ByReferenceKeyframe, FindsFramesNearIt) {
 TEST_P(ByReferenceKeyframe, FindsFramesFarFromTheLastPoseAmongWrongMatches) {
   const Rigid3 truth = RingWorld::CamFromWorld(3.0 / 24.0);
   Frame frame = *world_.Observe(FrameId(1000), truth).frame;
-  frame.words.clear();
+  frame.words = {};
   std::ranges::fill(frame.features.depth, 0.0F);
   std::vector<Keypoint>& keypoints = frame.features.keypoints;
   for (size_t i = 0; i + 2 < keypoints.size(); i += 3) {
@@ -151,7 +151,7 @@ TEST_P(ByReferenceKeyframe, DoesNotFindOthers) {
 // A frame may have no words although the map has a vocabulary.
 TEST_P(ByReferenceKeyframe, DoesNotNeedWords) {
   Frame frame = *world_.Observe(FrameId(1000), RingWorld::CamFromWorld(0.125)).frame;
-  frame.words.clear();
+  frame.words = {};
   EXPECT_TRUE(Find(frame));
 }
 
@@ -237,7 +237,7 @@ TEST_F(Relocalisation, NeedsWordsOfFrameAndMap) {
   const RingMap without =
       MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3(), .has_vocabulary = false});
   EXPECT_FALSE(Find(frame, without.map));
-  frame.words.clear();
+  frame.words = {};
   EXPECT_FALSE(Find(frame));
 }
 

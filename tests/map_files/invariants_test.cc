@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 
 #include <gtest/gtest.h>
 
@@ -253,7 +253,9 @@ TEST(InvariantsOfTheIndex, FindWordsThatTheIndexDoesNotHave) {
   Map map(SharedVocabulary());
   const KeyframeId id = AddKeyframe(map, 40, 10);
   EXPECT_EQ(FindViolations(map), std::vector<std::string>());
-  FrameOf(map, id).words[0] = WordId(63);
+  std::vector<WordId> words = FrameOf(map, id).words.get();
+  words[0] = WordId(63);
+  FrameOf(map, id).words = std::move(words);
   const std::vector<std::string> violations = FindViolations(map);
   ASSERT_FALSE(violations.empty());
   EXPECT_EQ(violations[0], "keyframe 0 has words that the index does not have");
@@ -262,7 +264,7 @@ TEST(InvariantsOfTheIndex, FindWordsThatTheIndexDoesNotHave) {
 TEST(InvariantsOfTheIndex, FindEntriesOfNoKeyframe) {
   Map map(SharedVocabulary());
   const KeyframeId id = AddKeyframe(map, 1);
-  FrameOf(map, id).words.clear();
+  FrameOf(map, id).words = {};
   EXPECT_EQ(FindViolations(map), std::vector<std::string>{"the index has 1 entries, expected 0"});
 }
 

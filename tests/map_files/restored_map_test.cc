@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/restored_map.h"
+#include "map_files/restored_map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "map/invariants.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map_files/invariants.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/restored_map.h"
+#include "map_files/restored_map.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 
 namespace hullslam {
 namespace {
@@ -116,7 +116,7 @@ void CheckReferences(const MapTables& tables) {
 
 void CheckWords(const MapTables& tables, const Vocabulary& vocabulary) {
   tables.keyframes.ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    for (const WordId word : keyframe.frame->words) {
+    for (const WordId word : keyframe.frame->words.get()) {
       Require(word.value < vocabulary.word_count(), id, "has a word that is not in the vocabulary");
     }
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/invariants.h"
+#include "map_files/invariants.h"
 
 #include <algorithm>
 #include <cmath>
