@@ -24,6 +24,13 @@ export function sizeText(object, unit) {
     : `${sizes.map((size) => size.toFixed(3)).join(' × ')} ${unit}`;
 }
 
+// What the masks leave free: 'round about z', 'length of x', of the axes of the ellipsoid.
+export function freeText({ body }) {
+  const axes = (key) => ((body && body[key]) || []).join(', ');
+  return [axes('round_axes') && `round about ${axes('round_axes')}`,
+    axes('unseen_axes') && `length of ${axes('unseen_axes')}`].filter((text) => text).join('; ');
+}
+
 export class Card {
   // `onChoose(id)` chooses an object, `onTime(t)` a moment.
   constructor(place, store, onChoose, onTime) {
@@ -88,6 +95,9 @@ export class Card {
         : 'not mapped'],
       ['Quality', number(object.quality)],
       ['Size', sizeText(object, unit)],
+      object.body && object.body.box && ['Box', sizeText({ half_axes: object.body.box.half_extents },
+        unit)],
+      freeText(object) && ['Not determined', freeText(object)],
       ['Centre', `${centre} ${unit}`],
       ['Views', String(object.observations)],
       ['Angle between views', isNumber(object.parallax_deg)

@@ -278,3 +278,38 @@ export function objectsLayer(store, look) {
   }
   return group;
 }
+
+// The twelve edges of a box. Those of a side that no mask limits are faint.
+function box(object, colour) {
+  const { centre, rotation, half_extents: half, sides_seen: seen } = object.body.box;
+  const edges = { true: [], false: [] };
+  for (let axis = 0; axis < 3; ++axis) {
+    for (const [first, second] of [[-1, -1], [-1, 1], [1, -1], [1, 1]]) {
+      const across = [(axis + 1) % 3, (axis + 2) % 3];
+      const isSeen = !seen || (seen[2 * across[0] + (first > 0)] && seen[2 * across[1] + (second > 0)]);
+      for (const end of [-1, 1]) {
+        const corner = [0, 0, 0];
+        corner[axis] = end * half[axis];
+        corner[across[0]] = first * half[across[0]];
+        corner[across[1]] = second * half[across[1]];
+        edges[Boolean(isSeen)].push(...corner);
+      }
+    }
+  }
+  const group = new THREE.Group();
+  group.add(segments(Float32Array.from(edges.true), colour, 0.95),
+    segments(Float32Array.from(edges.false), colour, 0.3));
+  group.position.set(...centre);
+  group.quaternion.set(...rotation);
+  return group;
+}
+
+export function boxesLayer(store) {
+  const group = new THREE.Group();
+  for (const object of store.get('objects', [])) {
+    if (object.body && object.body.box) {
+      group.add(box(object, colourOfClass(object.class)));
+    }
+  }
+  return group;
+}

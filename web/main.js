@@ -181,7 +181,8 @@ class Page {
   isThere(layer) {
     const edges = this.store.get('edges', {});
     return { grid: this.view?.bounds !== undefined, covisibility: edges.covisibility?.length > 0, loops: edges.loop?.length > 0,
-      labels: this.store.get('objects', []).length > 0 }[layer.name]
+      labels: this.store.get('objects', []).length > 0,
+      boxes: this.store.get('objects', []).some((object) => object.body?.box) }[layer.name]
       ?? layer.parts.slice(0, 1).every((part) => {
         const value = this.store.get(part);
         return value && (Array.isArray(value) ? value.length > 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of the page beside the view: the figures at its top, and the sections below it.
-import { bars, facts, sizeText } from './card.js';
+import { bars, facts, freeText, sizeText } from './card.js';
 import { colourOfClass } from './colours.js';
 import { strip, stripTitle } from './pictures.js';
 import { html, isNumber, length, milliseconds, number, seconds, whole, words } from './text.js';
@@ -58,14 +58,16 @@ function objectTable(store, onChoose) {
   const objects = [...store.get('objects', [])].sort((a, b) => (a.state === b.state
     ? (b.quality || 0) - (a.quality || 0) : a.state === 'mapped' ? -1 : 1));
   const columns = [{ title: 'Object', isText: true }, { title: 'State', isText: true },
-    { title: 'Quality' }, { title: 'Size' }, { title: 'Views' }, { title: 'Angle' },
+    { title: 'Quality' }, { title: 'Size' },
+    { title: 'Not determined', isText: true }, { title: 'Views' }, { title: 'Angle' },
     { title: 'Overlap' }, { title: 'Misfit' }];
   return table(columns, objects.map((object) => ({ onclick: () => onChoose(object.id), cells: [
     html('span', {}, html('i', { class: 'swatch', style: `background:${colourOfClass(object.class)};`
       + 'margin-right:8px' }), `${object.class} ${object.id}`),
     object.state === 'mapped' ? 'mapped'
       : `not mapped${object.reason ? `: ${words(object.reason)}` : ''}`,
-    number(object.quality), sizeText(object, store.unit()), String(object.observations),
+    number(object.quality), sizeText(object, store.unit()), freeText(object) || '–',
+    String(object.observations),
     isNumber(object.parallax_deg) ? `${object.parallax_deg.toFixed(0)}°` : '–',
     number(object.siou), `${number(object.misfit_px, 1)} px`] })));
 }

@@ -4,12 +4,14 @@ import { fitPoints, samplePoints } from './fit.js';
 import { frustumCorners, frustumSegments, positionAt, robustBounds, rotationAt }
   from './geometry.js';
 import { colourOfClass, themeColour } from './colours.js';
-import { covisibilityLayer, gridLayer, groundtruthLayer, keyframesLayer, landmarksLayer, loopsLayer,
-  objectsLayer, scaleOfColours, trajectoryLayer } from './layers.js';
+import { boxesLayer, covisibilityLayer, gridLayer, groundtruthLayer, keyframesLayer,
+  landmarksLayer, loopsLayer, objectsLayer, scaleOfColours, trajectoryLayer } from './layers.js';
 import { html } from './text.js';
 
 export const LAYERS = [
   { name: 'objects', title: 'Objects', make: objectsLayer, parts: ['objects'], on: true,
+    mark: 'hsl(268, 68%, 66%)' },
+  { name: 'boxes', title: 'Boxes', make: boxesLayer, parts: ['objects'], on: false,
     mark: 'hsl(268, 68%, 66%)' },
   { name: 'labels', title: 'Labels', parts: ['objects'], on: true, mark: 'var(--text)' },
   { name: 'landmarks', title: 'Landmarks', make: landmarksLayer, parts: ['landmarks', 'up'],

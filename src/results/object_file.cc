@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -33,6 +34,15 @@ Json PoseJson(const Rigid3& pose) {
   }
   for (const double value : pose.rotation.coeffs()) {
     json.push_back(Rounded(value, kMetre));
+  }
+  return json;
+}
+
+// Half axes are larger than 0, so they are not rounded to it. A candidate may be as flat as this.
+Json HalfAxesJson(const Eigen::Vector3d& axes) {
+  Json json = Json::array();
+  for (const double axis : axes) {
+    json.push_back(std::max(Rounded(axis, kMetre), kMetre));
   }
   return json;
 }
@@ -118,8 +128,7 @@ Json ToJson(const ObjectResult& object) {
           {"votes", votes},
           {"state", ToString(object.state)},
           {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
-          {"half_axes",
-           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
+          {"half_axes", HalfAxesJson(axes)},
           {"dual_quadric", QuadricJson(object.ellipsoid)},
           {"siou", RoundedOrNull(object.fit.siou)},
           {"siou_mask", RoundedOrNull(object.fit.siou_mask)},
@@ -138,8 +147,7 @@ Json ToJson(const std::optional<LocatedObject>& located) {
   const Eigen::Vector3d& axes = located->ellipsoid.half_axes;
   return {{"object", located->object.value},
           {"world_from_object", PoseJson(located->ellipsoid.world_from_object)},
-          {"half_axes",
-           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}}};
+          {"half_axes", HalfAxesJson(axes)}};
 }
 
 Json ToJson(const ChangedObject& changed) {
@@ -185,7 +193,7 @@ std::string CsvNumber(const std::optional<double>& value) {
 
 }  // namespace
 
-std::string FormatObjects(const ObjectResults& report) {
+std::string FormatObjects(const ObjectResults& report, const Scene& scene) {
   const Json head = {{"version", kObjectFileVersion},
                      {"sequence", report.sequence},
                      {"camera", ToJson(report.camera)},
@@ -193,7 +201,11 @@ std::string FormatObjects(const ObjectResults& report) {
                      {"changes", ToJson(report.changes)}};
   std::vector<std::string> objects;
   for (const ObjectResult& object : report.objects) {
-    objects.push_back(DumpLine(ToJson(object)));
+    Json json = ToJson(object);
+    if (const SceneObject* const body = scene.Find(object.id)) {
+      json.update(BodyJson(*body));
+    }
+    objects.push_back(DumpLine(json));
   }
   return WithEntries(head, "objects", objects);
 }
@@ -235,7 +247,7 @@ std::string FormatObjectsCsv(const ObjectResults& report) {
 }
 
 std::vector<FileContent> ObjectFiles(const ObjectResults& report, const Scene& scene) {
-  return {{"objects.json", FormatObjects(report)},
+  return {{"objects.json", FormatObjects(report, scene)},
           {"objects_observations.json", FormatObservations(report)},
           {"objects.csv", FormatObjectsCsv(report)},
           {"objects.ply", FormatObjectsPly(report.objects)},

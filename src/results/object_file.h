@@ -19,8 +19,9 @@ inline constexpr uint32_t kObjectFileVersion = 2;
 // objects again. Pixels are rounded to 0.01, metres to 1e-9. The same report gives the same bytes.
 // All functions throw CheckError for values that are not finite.
 
-// The text of `objects.json`: the camera and the objects, without their observations.
-std::string FormatObjects(const ObjectResults& report);
+// The text of `objects.json`: the camera and the objects, without their observations. Objects of
+// the scene have its boxes and free axes.
+std::string FormatObjects(const ObjectResults& report, const Scene& scene = {});
 // The text of `objects_observations.json`: the observations of all objects.
 std::string FormatObservations(const ObjectResults& report);
 // The text of `objects.csv`: a table with one line per object.

@@ -38,8 +38,33 @@ SceneJson BoxJson(const std::optional<UprightBox>& box) {
   }
   return {{"centre", VectorJson(box->world_from_box.translation)},
           {"half_extents", VectorJson(box->half_extents)},
-          {"rotation", VectorJson(box->world_from_box.rotation.coeffs())}};
+          {"rotation", VectorJson(box->world_from_box.rotation.coeffs())},
+          {"sides_seen", box->is_seen}};
 }
+
+// The axes with a property, by their names; null if it is not known.
+SceneJson AxesJson(const SceneObject& object, bool FreeAxis::*property) {
+  if (!object.covariance) {
+    return nullptr;
+  }
+  SceneJson names = SceneJson::array();
+  for (size_t i = 0; i < object.covariance->axes.size(); ++i) {
+    if (object.covariance->axes[i].*property) {
+      names.push_back(std::string(1, static_cast<char>('x' + i)));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+nlohmann::ordered_json BodyJson(const SceneObject& object) {
+  return {{"box", BoxJson(object.box)},
+          {"round_axes", AxesJson(object, &FreeAxis::is_round)},
+          {"unseen_axes", AxesJson(object, &FreeAxis::is_unseen)}};
+}
+
+namespace {
 
 SceneJson SceneObjectJson(const SceneObject& object) {
   SceneJson shares = SceneJson::object();
@@ -54,13 +79,13 @@ SceneJson SceneObjectJson(const SceneObject& object) {
       {"centre", VectorJson(object.ellipsoid.world_from_object.translation)},
       {"axes", VectorJson(object.ellipsoid.half_axes)},
       {"rotation", VectorJson(object.ellipsoid.world_from_object.rotation.coeffs())},
-      {"box", BoxJson(object.box)},
       {"centre_covariance", covariance ? MatrixJson(covariance->center) : SceneJson(nullptr)},
       {"axes_covariance", covariance ? MatrixJson(covariance->half_axes) : SceneJson(nullptr)},
       {"times_seen", object.observations},
       {"first_seen", Rounded(object.first_seen, kSceneUnit)},
       {"last_seen", Rounded(object.last_seen, kSceneUnit)},
       {"quality", Rounded(object.quality, kSceneUnit)}};
+  json.update(BodyJson(object));
   if (!object.embedding.empty()) {
     const Eigen::Map<const Eigen::VectorXf> embedding(
         object.embedding.data(), static_cast<Eigen::Index>(object.embedding.size()));

@@ -55,6 +55,31 @@ std::map<std::string, double> ReadShares(const JsonNode& node) {
   return shares;
 }
 
+void ReadSeenSides(const JsonNode& node, UprightBox& box) {
+  const std::vector<JsonNode> sides = node.Elements();
+  if (sides.size() != box.is_seen.size()) {
+    node.Fail("true or false for each of six sides");
+  }
+  for (size_t i = 0; i < sides.size(); ++i) {
+    box.is_seen[i] = sides[i].Flag();
+  }
+}
+
+// Files of earlier versions do not have these keys.
+void ReadAxes(const JsonNode& object, const char* key, bool FreeAxis::*property,
+              ShapeCovariance& covariance) {
+  if (!object.Has(key)) {
+    return;
+  }
+  for (const JsonNode& name : object.At(key).Elements()) {
+    const std::string text = name.Text();
+    if (text != "x" && text != "y" && text != "z") {
+      name.Fail("x, y or z");
+    }
+    covariance.axes.at(static_cast<size_t>(text[0] - 'x')).*property = true;
+  }
+}
+
 SceneObject ReadSceneObject(const JsonNode& node) {
   SceneObject object;
   object.id = ObjectId(node.At("id").Count());
@@ -67,10 +92,15 @@ SceneObject ReadSceneObject(const JsonNode& node) {
     const JsonNode box = node.At("box");
     object.box = UprightBox{{ReadRotation(box.At("rotation")), ReadPosition(box.At("centre"))},
                             box.At("half_extents").Lengths()};
+    if (box.Has("sides_seen")) {
+      ReadSeenSides(box.At("sides_seen"), *object.box);
+    }
   }
   if (node.Has("centre_covariance")) {
     object.covariance = ShapeCovariance{ReadCovariance(node.At("centre_covariance")),
                                         ReadCovariance(node.At("axes_covariance"))};
+    ReadAxes(node, "round_axes", &FreeAxis::is_round, *object.covariance);
+    ReadAxes(node, "unseen_axes", &FreeAxis::is_unseen, *object.covariance);
   }
   object.observations = node.At("times_seen").Count();
   object.first_seen = node.At("first_seen").Number(kMostSeconds);

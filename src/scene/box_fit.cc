@@ -3,9 +3,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "objects/constraint/misfit.h"
 #include "optim/robust.h"
@@ -115,7 +117,9 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
                                           const Eigen::Quaterniond& frame_from_world) {
   const Rigid3& pose = ellipsoid.world_from_object;
   std::vector<SupportPlane> planes;
+  size_t view = 0;
   for (const ResolvedObservation& observation : observations) {
+    ++view;
     for (const SilhouetteLine& line : observation.detection->lines) {
       const auto plane = PlaneOfLine(camera, observation.cam_from_world, ellipsoid, line.line);
       if (line.is_one_sided || !plane) {
@@ -124,7 +128,8 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
       const Eigen::Vector3d in_world = pose.rotation * plane->normal;
       planes.push_back({.normal = frame_from_world * in_world,
                         .support = SupportOf(ellipsoid, in_world) + plane->excess,
-                        .pixels_per_metre = plane->pixels_per_metre});
+                        .pixels_per_metre = plane->pixels_per_metre,
+                        .view = view});
     }
   }
   return planes;
@@ -167,6 +172,22 @@ std::optional<UprightBox> FitBox(std::span<const SupportPlane> planes, const Ell
     return std::nullopt;
   }
   return fit.Box();
+}
+
+void FindSeenSides(std::span<const SupportPlane> planes, const Eigen::Quaterniond& frame_from_world,
+                   UprightBox& box) {
+  std::array<std::set<size_t>, 6> views;  // that touch each side
+  const Eigen::Quaterniond box_from_frame =
+      (frame_from_world * box.world_from_box.rotation).conjugate();
+  for (const SupportPlane& plane : planes) {
+    const Eigen::Vector3d normal = box_from_frame * plane.normal;
+    Eigen::Index axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    views.at(2 * static_cast<size_t>(axis) + (normal[axis] > 0.0 ? 1 : 0)).insert(plane.view);
+  }
+  for (size_t side = 0; side < views.size(); ++side) {
+    box.is_seen[side] = views[side].size() >= 2;
+  }
 }
 
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ struct SupportPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // unit vector, outwards
   double support = 0.0;                               // m
   double pixels_per_metre = 1.0;  // shift of the line in its image per shift of the plane
+  size_t view = 0;                // index of the observation
 };
 
 // The planes of all lines of the observations that nothing cuts off, in the frame of
@@ -40,5 +42,14 @@ std::vector<SupportPlane> SupportPlanesOf(const PinholeCamera& camera, const Ell
 // In the last step a plane that cuts the box has an eighth of the weight of one beyond it, because
 // a thing such as a chair is smaller than its box in most directions.
 std::optional<UprightBox> FitBox(std::span<const SupportPlane> planes, const Ellipsoid& ellipsoid);
+
+// Which sides of a box in the world the planes in the frame of `frame_from_world` limit. A side is
+// seen if planes of two views or more touch it: a plane touches the side whose place changes its
+// support most, which is the side whose outward normal is nearest to its own. (So a plane whose
+// normal is up to 30 degrees from that of a side always touches it.) The place of a side has no
+// sigma: neither the information of the lines nor a jackknife over the views came near the true
+// errors, because most of them come from the shape (docs/scene.md).
+void FindSeenSides(std::span<const SupportPlane> planes, const Eigen::Quaterniond& frame_from_world,
+                   UprightBox& box);
 
 }  // namespace hullslam

@@ -91,11 +91,18 @@ Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& 
       bodies.back().height_sigma = std::sqrt(up.up->dot(object.covariance->center * *up.up));
     }
     if (up.up) {
-      const std::optional<UprightBox> box =
-          FitBox(SupportPlanesOf(report.camera, object.ellipsoid, observations, upright_from_world),
-                 bodies.back().ellipsoid);
-      object.box = box ? UprightBox{world_from_upright * box->world_from_box, box->half_extents}
-                       : BoxOf(bodies.back(), upright_from_world);
+      const std::vector<SupportPlane> planes =
+          SupportPlanesOf(report.camera, object.ellipsoid, observations, upright_from_world);
+      object.box = FitBox(planes, bodies.back().ellipsoid);
+      if (object.box) {  // a thing whose lines are those of a box is not round
+        for (size_t i = 0; object.covariance && i < object.covariance->axes.size(); ++i) {
+          object.covariance->axes[i].is_round = false;
+        }
+        object.box->world_from_box = world_from_upright * object.box->world_from_box;
+      } else {
+        object.box = BoxOf(bodies.back(), upright_from_world);
+      }
+      FindSeenSides(planes, upright_from_world, *object.box);
     }
   }
   const ObservationStatistics observations = CollectObservationStatistics(map, report.camera);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -22,12 +23,21 @@ namespace hullslam {
 struct UprightBox {
   Rigid3 world_from_box;  // the origin is the centre of the box
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
+  // Whether the masks limit the side at -x, +x, -y, +y, -z, +z of its frame (box_fit.h).
+  std::array<bool, 6> is_seen = {};
+};
+
+// What the masks leave free at an axis of an ellipsoid (shape_covariance.h).
+struct FreeAxis {
+  bool is_round = false;   // turning about it changes nothing
+  bool is_unseen = false;  // the length of its half axis is not determined
 };
 
 // How well the shape of an object is known.
 struct ShapeCovariance {
   Eigen::Matrix3d center = Eigen::Matrix3d::Zero();     // m^2, world axes
   Eigen::Matrix3d half_axes = Eigen::Matrix3d::Zero();  // m^2, in the order of the half axes
+  std::array<FreeAxis, 3> axes = {};                    // likewise
 };
 
 struct SceneObject {

@@ -206,6 +206,27 @@ Information PriorOf(const Ellipsoid& start, bool has_depth) {
   return diagonal.asDiagonal();
 }
 
+// What is free, of the covariance and of what the prior contributes to each parameter (0 to 1).
+std::array<FreeAxis, 3> FindFreeAxes(const Ellipsoid& ellipsoid, const Gradient& variances,
+                                     const Gradient& prior_shares) {
+  constexpr double kMostTurn = 26.0 * std::numbers::pi / 180.0;
+  constexpr double kMostLength = 0.25;
+  constexpr double kMostPrior = 0.5;
+  constexpr double kEqual = 1.2;  // ratio of half axes
+  const auto is_free = [&](Eigen::Index parameter, double most) {
+    return prior_shares[parameter] > kMostPrior || variances[parameter] > most * most;
+  };
+  std::array<FreeAxis, 3> axes;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double a = ellipsoid.half_axes[(i + 1) % 3];
+    const double b = ellipsoid.half_axes[(i + 2) % 3];
+    axes.at(static_cast<size_t>(i)) = {
+        .is_round = std::max(a, b) <= kEqual * std::min(a, b) && is_free(3 + i, kMostTurn),
+        .is_unseen = is_free(6 + i, kMostLength)};
+  }
+  return axes;
+}
+
 }  // namespace
 
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
@@ -222,8 +243,9 @@ std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const E
   const ShapeVariances variances = MeasureVariances(patches);
   const double noise_px = MeasureNoise(terms, patches);
   // As in the refinement, the misfit sets the sigma of a line.
-  Information information = PriorOf(start, HasDepth(observations));
-  Information errors = information;
+  const Information prior = PriorOf(start, HasDepth(observations));
+  Information information = prior;
+  Information errors = prior;
   for (LineTerm& term : terms) {
     const double noise = noise_px / term.pixels_per_metre;
     term.weight = term.share / (noise * noise + variances.even + variances.odd + kLeastVariance);
@@ -244,6 +266,9 @@ std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const E
   result.center =
       world_from_object * covariance.topLeftCorner<3, 3>() * world_from_object.transpose();
   result.half_axes = axes * covariance.bottomRightCorner<3, 3>() * axes;
+  const Information without_errors = solver.solve(Information::Identity());
+  result.axes = FindFreeAxes(ellipsoid, covariance.diagonal(),
+                             without_errors.diagonal().cwiseProduct(prior.diagonal()));
   return result;
 }
 

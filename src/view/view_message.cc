@@ -10,6 +10,7 @@
 
 #include "files/base64.h"
 #include "results/json_text.h"
+#include "results/scene_file.h"
 #include "util/text.h"
 
 namespace hullslam {
@@ -252,7 +253,9 @@ nlohmann::json ObjectJson(const ViewObject& shown, double start) {
   for (const auto& [label, score] : object.votes) {
     votes[Printable(label)] = score;
   }
+  Json body = shown.body ? Json(BodyJson(*shown.body)) : Json();
   return {{"id", object.id.value},
+          {"body", std::move(body)},
           {"class", Printable(object.label)},
           {"state", ToString(object.state)},
           {"reason", shown.reason},

@@ -60,6 +60,7 @@ struct ViewObject {
   ObjectResult object;
   std::string reason;                // why it is not mapped; empty if it is, or if unknown
   std::vector<ViewPicture> cutouts;  // the best views, the best one first
+  std::optional<SceneObject> body = std::nullopt;  // its box and its free axes
 };
 
 // Pairs of ids of keyframes.

@@ -91,6 +91,11 @@ void AddScene(const FinishedRun& run, ViewModel& model) {
   AddPart("relations", model, [&] {
     Scene scene = run.ReadSceneGraph().value_or(Scene());
     model.up = scene.up ? scene.up : model.up;
+    for (ViewObject& object : model.objects) {
+      if (const SceneObject* const body = scene.Find(object.object.id)) {
+        object.body = *body;
+      }
+    }
     model.relations = std::move(scene.relations);
   });
 }

@@ -87,6 +87,33 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(observation["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
 }
 
+TEST(ObjectFile, AnObjectOfTheSceneHasItsBoxAndItsFreeAxes) {
+  Scene scene;
+  SceneObject& body = scene.objects.emplace_back();
+  body.id = ObjectId(7);
+  body.box = UprightBox{Rigid3(Eigen::Quaterniond::Identity(), {0.1, 0.2, 0.3}), {0.4, 0.5, 0.6}};
+  body.box->is_seen[5] = true;
+  body.covariance.emplace().axes[1].is_round = true;
+  const Json json = Json::parse(FormatObjects(MakeReport(), scene));
+  const Json& object = json["objects"][0];
+  EXPECT_EQ(object["box"]["centre"], Json({0.1, 0.2, 0.3}));
+  EXPECT_EQ(object["box"]["half_extents"], Json({0.4, 0.5, 0.6}));
+  EXPECT_EQ(object["box"]["sides_seen"], Json({false, false, false, false, false, true}));
+  EXPECT_EQ(object["round_axes"], Json::array({"y"}));
+  EXPECT_FALSE(json["objects"][1].contains("box")) << "a candidate";
+}
+
+// Masks of one camera may give a candidate without thickness; other programs, and the reader, need
+// a length.
+TEST(ObjectFile, AHalfAxisIsNeverRoundedToZero) {
+  const TemporaryFolder folder;
+  ObjectResults report = MakeReport();
+  report.objects[1].ellipsoid.half_axes.x() = 1e-12;
+  folder.Write("objects_observations.json", FormatObservations(report));
+  const ObjectResults read = ReadObjects(folder.Write("objects.json", FormatObjects(report)));
+  EXPECT_EQ(read.objects[1].ellipsoid.half_axes.x(), 1e-9);
+}
+
 TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
   const ObjectResults report = MakeReport();
   const Json json = Json::parse(FormatObjects(report));

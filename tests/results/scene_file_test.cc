@@ -23,6 +23,9 @@ Scene MakeFileScene() {
       UprightBox{scene.objects[0].ellipsoid.world_from_object, Eigen::Vector3d(0.05, 0.05, 0.05)};
   scene.objects[0].covariance =
       ShapeCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-6 * Eigen::Matrix3d::Identity()};
+  scene.objects[0].box->is_seen = {true, true, false, true, false, true};
+  scene.objects[0].covariance->axes[2].is_round = true;
+  scene.objects[0].covariance->axes[0].is_unseen = true;
   scene.objects[0].observations = 7;
   scene.objects[0].first_seen = 1000.25;
   scene.objects[0].last_seen = 1002.5;
@@ -42,6 +45,10 @@ TEST(SceneFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(cup["centre"], Json({0.0, 0.0, 0.1}));
   EXPECT_EQ(cup["axes"], Json({0.05, 0.05, 0.05}));
   EXPECT_EQ(cup["box"]["half_extents"], Json({0.05, 0.05, 0.05}));
+  EXPECT_EQ(cup["box"]["sides_seen"], Json({true, true, false, true, false, true}));
+  EXPECT_EQ(cup["round_axes"], Json::array({"z"}));
+  EXPECT_EQ(cup["unseen_axes"], Json::array({"x"}));
+  EXPECT_TRUE(json["objects"][1]["round_axes"].is_null());
   EXPECT_EQ(cup["centre_covariance"][0][0], 1e-4);
   EXPECT_EQ(cup["times_seen"], 7);
   EXPECT_TRUE(json["objects"][1]["box"].is_null());
@@ -82,6 +89,8 @@ TEST(SceneFile, RefusesBrokenFilesWithTheKey) {
   expect([](Json& json) { json["objects"][0]["rotation"] = {0, 0, 0, 0}; }, {"rotation"});
   expect([](Json& json) { json["objects"][0]["axes"] = {0.1, -0.1, 0.1}; }, {"axes"});
   expect([](Json& json) { json["objects"][0]["vector"][1] = "x"; }, {"objects[0].vector[1]"});
+  expect([](Json& json) { json["objects"][0]["round_axes"] = {"w"}; }, {"round_axes[0]"});
+  expect([](Json& json) { json["objects"][0]["box"]["sides_seen"].erase(0); }, {"sides_seen"});
   expect([](Json& json) { json["relations"][0]["object"] = 77; }, {"relations[0].object"});
   expect([](Json& json) { json["relations"][0]["relation"] = "above"; }, {"above"});
   expect([](Json& json) { json["surfaces"][0]["objects"][0] = 77; }, {"surfaces[0].objects"});

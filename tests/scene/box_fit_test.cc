@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -119,6 +120,22 @@ TEST(FitBox, WhatNoLineTellsIsThatOfTheEllipsoid) {
   EXPECT_NEAR(box->world_from_box.translation.z() + box->half_extents.z(), 0.1, 5e-3);
   planes.resize(20);
   EXPECT_FALSE(FitBox(planes, Around(Rigid3(), half))) << "too few";
+}
+
+// Two views touch +x and +z of the turned box, one view touches -y, and none touches the others.
+TEST(FindSeenSides, NeedsLinesOfTwoViews) {
+  const Rigid3 pose = Turned(40.0, {0.1, 0.2, 0.3});
+  const Eigen::Quaterniond frame(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  UprightBox box{pose, Eigen::Vector3d(0.2, 0.1, 0.1)};
+  const auto plane = [&](const Eigen::Vector3d& in_box, size_t view) {
+    return SupportPlane{
+        .normal = frame * (pose.rotation * in_box.normalized()), .support = 0.0, .view = view};
+  };
+  const std::vector<SupportPlane> planes = {plane({1.0, 0.5, 0.0}, 0),  plane({1.0, -0.4, 0.3}, 3),
+                                            plane({0.2, 0.0, 1.0}, 1),  plane({0.0, -0.3, 1.0}, 2),
+                                            plane({0.0, -1.0, 0.1}, 2), plane({0.1, -1.0, 0.0}, 2)};
+  FindSeenSides(planes, frame, box);
+  EXPECT_EQ(box.is_seen, (std::array{false, true, false, false, false, true}));
 }
 
 TEST(SupportPlanesOf, AreThoseOfTheLinesThatNothingCuts) {

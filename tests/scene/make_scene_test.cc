@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -40,6 +41,10 @@ TEST_F(MakeSceneTest, DescribesTheObjects) {
   EXPECT_EQ(cup.last_seen, 21.0);
   ASSERT_TRUE(cup.box && cup.covariance);
   EXPECT_NEAR(cup.box->half_extents.z(), 0.06, 0.005);
+  EXPECT_TRUE(cup.covariance->axes[2].is_round);
+  EXPECT_FALSE(cup.covariance->axes[0].is_unseen);
+  // The cameras look down on it at 27 degrees, so their lines limit its sides and its top.
+  EXPECT_EQ(cup.box->is_seen, (std::array{true, true, true, true, true, true}));
 }
 
 TEST_F(MakeSceneTest, TheVectorOfAnObjectIsTheMeanOfItsMasksWeightedByTheirScores) {

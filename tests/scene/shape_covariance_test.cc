@@ -66,6 +66,31 @@ TEST(ShapeCovariance, IsLargeAlongTheViewsIfTheyAreFromOneSide) {
   EXPECT_GT(LargestSigma(*one_side), 2.0 * LargestSigma(*around));
 }
 
+// Turning a bottle about its upright axis changes no mask, and all of its half axes are known.
+TEST(ShapeCovariance, ARoundThingIsFreeToTurnAboutItsAxis) {
+  const MadeObject bottle = Standing("bottle", {0.1, 0.0, 0.0}, {0.04, 0.04, 0.12});
+  const auto covariance = NoisyViews(bottle, 6.0, 0.5).Covariance(bottle);
+  ASSERT_TRUE(covariance);
+  EXPECT_TRUE(covariance->axes[2].is_round);
+  EXPECT_FALSE(covariance->axes[0].is_round || covariance->axes[1].is_round);
+  for (const FreeAxis& axis : covariance->axes) {
+    EXPECT_FALSE(axis.is_unseen);
+  }
+}
+
+// One view from +x tells the width and the height, but not the depth.
+TEST(ShapeCovariance, OneSideDoesNotTellTheLengthAlongTheViews) {
+  const MadeObject thing = Standing("thing", {0.0, 0.0, 0.0}, {0.1, 0.15, 0.3});
+  const auto one_side = NoisyViews(thing, 0.02, 0.5).Covariance(thing);
+  const auto around = NoisyViews(thing, 6.0, 0.5).Covariance(thing);
+  ASSERT_TRUE(one_side && around);
+  EXPECT_TRUE(one_side->axes[0].is_unseen);
+  EXPECT_FALSE(one_side->axes[1].is_unseen || one_side->axes[2].is_unseen);
+  for (const FreeAxis& axis : around->axes) {
+    EXPECT_FALSE(axis.is_round || axis.is_unseen);
+  }
+}
+
 TEST(ShapeCovariance, IsSymmetric) {
   const auto covariance = NoisyViews(kCup, 6.0, 1.0).Covariance(kCup);
   ASSERT_TRUE(covariance);

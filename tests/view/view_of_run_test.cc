@@ -94,7 +94,7 @@ TEST_F(ViewOfRunTest, AMonocularRunHasAnUnknownUnit) {
   EXPECT_FALSE(ViewOfRun(folder_.path()).is_metric);
 }
 
-TEST_F(ViewOfRunTest, RelationsComeFromTheScene) {
+TEST_F(ViewOfRunTest, RelationsAndBoxesComeFromTheScene) {
   Scene scene;
   scene.up = Eigen::Vector3d::UnitZ();
   scene.objects.resize(2);
@@ -103,6 +103,7 @@ TEST_F(ViewOfRunTest, RelationsComeFromTheScene) {
   for (SceneObject& object : scene.objects) {
     object.ellipsoid.half_axes.setConstant(0.1);
   }
+  scene.objects[0].box = UprightBox{Rigid3(), {0.1, 0.2, 0.3}};
   scene.relations = {{ObjectId(7), RelationKind::kOn, ObjectId(8), {}}};
   folder_.Write("scene.json", FormatScene(scene));
   const ViewModel model = ViewOfRun(folder_.path());
@@ -110,6 +111,9 @@ TEST_F(ViewOfRunTest, RelationsComeFromTheScene) {
   EXPECT_EQ(*model.up, Eigen::Vector3d::UnitZ());
   ASSERT_EQ(model.relations.size(), 1u);
   EXPECT_EQ(model.relations[0].kind, RelationKind::kOn);
+  ASSERT_FALSE(model.objects.empty());
+  ASSERT_TRUE(model.objects[0].body && model.objects[0].body->box);
+  EXPECT_EQ(model.objects[0].body->box->half_extents.z(), 0.3);
   folder_.Write("scene.json", R"({"version": 1, "relations": [{"subject": "x"}]})");
   EXPECT_TRUE(HasNote(ViewOfRun(folder_.path()), "relations left out: "));
 }
