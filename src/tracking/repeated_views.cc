@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -87,6 +88,64 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
   return static_cast<double>(found) >= kLeastFound * static_cast<double>(landmarks);
 }
 
+constexpr double kMatureTime = 60.0;  // s
+constexpr int kMatureViews = 3;
+constexpr double kSimilarAngle = 0.26;  // rad, between two directions to a point: 15 degrees
+constexpr double kSimilarZoom = 0.35;   // logarithm of the ratio of distances
+constexpr int kColumns = 4;             // parts of the image
+constexpr int kRows = 3;
+constexpr int kFewKeypoints = 8;       // a part with fewer says nothing
+constexpr double kFewLandmarks = 0.1;  // with a smaller share a part of the image is new
+
+// Whether a keyframe shows most of the points from a similar direction and distance.
+bool ShowsSimilarly(const Sensor& sensor, const View& view, const Rigid3& keyframe_from_frame) {
+  const Eigen::Vector3d camera = keyframe_from_frame.translation;
+  const auto is_similar = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d there = keyframe_from_frame * point;
+    const Eigen::Vector3d ray = there - camera;
+    return there.z() > 0.0 && std::abs(std::log(there.norm() / point.norm())) < kSimilarZoom &&
+           std::atan2(there.cross(ray).norm(), there.dot(ray)) < kSimilarAngle &&
+           sensor.bounds.Contains(sensor.camera.Project(there));
+  };
+  return 2 * std::ranges::count_if(view.points, is_similar) >
+         static_cast<std::ptrdiff_t>(view.points.size());
+}
+
+// Whether no more than one part of the image has keypoints, but hardly any landmark.
+bool CoversTheImage(const Sensor& sensor, const Frame& frame,
+                    const std::vector<LandmarkId>& landmarks) {
+  struct Part {
+    int keypoints = 0;
+    int landmarks = 0;
+  };
+  std::array<Part, size_t{kColumns} * kRows> parts;
+  const PinholeCamera::Bounds& bounds = sensor.bounds;
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    const Eigen::Vector2d pixel = frame.features.keypoints[i].undistorted.cast<double>();
+    const double x = (pixel.x() - bounds.min_x) / (bounds.max_x - bounds.min_x);
+    const double y = (pixel.y() - bounds.min_y) / (bounds.max_y - bounds.min_y);
+    const int column = std::clamp(static_cast<int>(kColumns * x), 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(kRows * y), 0, kRows - 1);
+    Part& part = parts[static_cast<size_t>(row * kColumns + column)];
+    ++part.keypoints;
+    part.landmarks += landmarks[i].IsValid() ? 1 : 0;
+  }
+  return std::ranges::count_if(parts, [](const Part& part) {
+           return part.keypoints >= kFewKeypoints &&
+                  part.landmarks < kFewLandmarks * part.keypoints;
+         }) <= 1;
+}
+
+constexpr int kLastingFrames = 10;
+constexpr int kMostMissed = 2;
+constexpr double kLeastOverlap = 0.4;  // intersection over union of the boxes in two frames
+
+double Overlap(const Eigen::AlignedBox2d& a, const Eigen::AlignedBox2d& b) {
+  const Eigen::AlignedBox2d both = a.intersection(b);
+  const double area = both.isEmpty() ? 0.0 : both.volume();
+  return area / (a.volume() + b.volume() - area);
+}
+
 }  // namespace
 
 bool JoinRequests::MayAskAgain(const Map& map, const Sensor& sensor, KeyframeId reference,
@@ -135,6 +194,52 @@ bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, Frame
   return is_known(reference) ||
          std::any_of(covisible.begin(), covisible.end(),
                      [&](const Covisible& other) { return is_known(other.keyframe); });
+}
+
+bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
+                  FrameId first_of_session, const LocalTracking& tracking) {
+  const PoseEstimate& estimate = tracking.estimate;
+  if (2 * static_cast<size_t>(estimate.inliers) < tracking.visible.size() ||
+      !CoversTheImage(sensor, frame, estimate.landmarks)) {
+    return false;
+  }
+  const View view = ViewOf(map, estimate);
+  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
+  const auto is_similar = [&](KeyframeId id) {
+    const Keyframe& keyframe = map.keyframes().At(id);
+    return keyframe.frame->id >= first_of_session &&
+           frame.timestamp - keyframe.frame->timestamp > kMatureTime &&
+           ShowsSimilarly(sensor, view, keyframe.cam_from_world * world_from_cam);
+  };
+  int similar = is_similar(tracking.reference) ? 1 : 0;
+  for (const Covisible& other : map.keyframes().At(tracking.reference).covisible) {
+    similar += similar < kMatureViews && is_similar(other.keyframe) ? 1 : 0;
+  }
+  return similar >= kMatureViews;
+}
+
+int UnknownThings::Follow(const Frame& frame, const std::vector<ObjectId>& objects) {
+  for (Thing& thing : things_) {
+    ++thing.missed;
+  }
+  for (size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].IsValid()) {
+      continue;
+    }
+    const Detection& detection = frame.detections[i];
+    const auto known = std::ranges::find_if(things_, [&](const Thing& thing) {
+      return thing.missed > 0 && thing.label == detection.label &&
+             Overlap(thing.box, detection.box) >= kLeastOverlap;
+    });
+    Thing& thing = known != things_.end() ? *known : things_.emplace_back();
+    thing.label = detection.label;
+    thing.box = detection.box;
+    ++thing.seen;
+    thing.missed = 0;
+  }
+  std::erase_if(things_, [](const Thing& thing) { return thing.missed > kMostMissed; });
+  return static_cast<int>(std::ranges::count_if(
+      things_, [](const Thing& thing) { return thing.seen >= kLastingFrames; }));
 }
 
 }  // namespace hullslam

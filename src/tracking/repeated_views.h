@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
+#include "tracking/local_map_tracking.h"
 #include "tracking/pose_refinement.h"
 
 namespace hullslam {
@@ -41,5 +44,32 @@ class JoinRequests {
 // all places anew, because things may have changed.
 bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, FrameId first_of_session,
                  KeyframeId reference, const PoseEstimate& estimate);
+
+// Whether the map is mature where the camera is: at least three keyframes of this session that are
+// more than a minute older show most of what the frame finds, from a similar direction and
+// distance; the frame finds at least half of the landmarks that should be visible (a place that is
+// mapped by day and by lamp shows one half at a time); and all parts of the image show landmarks.
+// A new keyframe would add nothing to such a map.
+bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
+                  FrameId first_of_session, const LocalTracking& tracking);
+
+// Follows the detections that show no mapped object from frame to frame. Where the map is mature,
+// only what stays in the image is a reason for a keyframe: not the mistakes of a detector.
+class UnknownThings {
+ public:
+  // To be called once per frame. `objects` has one entry per detection. Returns how many of the
+  // unknown things were detected, at almost the same place in the image and with the same class, in
+  // ten of the last frames. A thing may be missed twice in a row.
+  int Follow(const Frame& frame, const std::vector<ObjectId>& objects);
+
+ private:
+  struct Thing {
+    std::string label;
+    Eigen::AlignedBox2d box;  // px
+    int seen = 0;             // number of frames
+    int missed = 0;           // since it was seen last
+  };
+  std::vector<Thing> things_;
+};
 
 }  // namespace hullslam

@@ -340,6 +340,7 @@ std::optional<Tracker::Found> Tracker::FindWidely(const std::shared_ptr<const Fr
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                             const MapperStatus& mapper) {
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
+  const int lasting_things = unknown_things_.Follow(frame, tracking.objects);
   KeyframeEvidence evidence =
       GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
   evidence.has_islands =
@@ -354,6 +355,10 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   }
   evidence.is_known_view =
       IsKnownView(map, sensor_, frame, first_frame_, tracking.reference, tracking.estimate);
+  evidence.is_well_mapped = IsWellMapped(map, sensor_, frame, first_frame_, tracking);
+  if (evidence.is_well_mapped) {
+    evidence.unknown_objects = std::min(evidence.unknown_objects, lasting_things);
+  }
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }

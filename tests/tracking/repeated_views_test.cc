@@ -143,5 +143,97 @@ TEST_F(KnownView, IsNoneIfItsLandmarksAreNotFound) {
   EXPECT_FALSE(IsKnown(Rigid3(), 60.0, 6)) << "the light has changed";
 }
 
+// A camera in a map of five keyframes that are 0.2 s apart. Later it comes back on another course.
+class WellMapped : public testing::Test {
+ protected:
+  // The camera finds each `period`th of the landmarks that it should see, in the part of the image
+  // to the left of this column.
+  bool Is(const Rigid3& motion, double seconds_later, size_t period = 1,
+          float column = 1e4f) const {
+    const Keyframe& middle = made_.map.keyframes().At(KeyframeId(2));
+    LocalTracking tracking;
+    tracking.reference = KeyframeId(2);
+    tracking.estimate.cam_from_world = motion * middle.cam_from_world;
+    const SyntheticView view = world_.Observe(FrameId(99), tracking.estimate.cam_from_world);
+    for (size_t i = 0; i < view.points.size(); ++i) {
+      const LandmarkId landmark = made_.landmarks[view.points[i]];
+      const bool is_mapped = view.frame->features.keypoints[i].undistorted.x() < column;
+      const bool is_found = is_mapped && i % period == 0;
+      if (is_mapped && landmark.IsValid()) {
+        tracking.visible.push_back(landmark);
+      }
+      tracking.estimate.landmarks.push_back(is_found ? landmark : LandmarkId());
+      tracking.estimate.inliers += is_found && landmark.IsValid() ? 1 : 0;
+    }
+    Frame frame = *view.frame;
+    frame.timestamp = middle.frame->timestamp + seconds_later;
+    return IsWellMapped(made_.map, world_.sensor(), frame, first_of_session_, tracking);
+  }
+  static Rigid3 Moved(double x, double z = 0.0) {
+    return {Eigen::Quaterniond::Identity(), {x, 0.0, z}};
+  }
+
+  FrameId first_of_session_ = FrameId(0);
+  const SyntheticWorld world_{{.points = 800}};
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 2, 4, 6, 8});
+};
+
+TEST_F(WellMapped, IsAPlaceThatSeveralOldKeyframesShow) {
+  EXPECT_TRUE(Is(Rigid3(), 100.0));
+  EXPECT_TRUE(Is(Moved(0.3), 100.0)) << "on another course";
+  EXPECT_FALSE(Is(Rigid3(), 50.0)) << "a run of a minute is as it was";
+  EXPECT_FALSE(Is(Moved(0.0, 3.0), 100.0)) << "from much farther away";
+}
+
+TEST_F(WellMapped, HalfOfTheLandmarksMustBeFound) {
+  EXPECT_TRUE(Is(Rigid3(), 100.0, 2)) << "mapped by day and by lamp";
+  EXPECT_FALSE(Is(Rigid3(), 100.0, 3));
+}
+
+TEST_F(WellMapped, AllOfTheImageMustBeMapped) { EXPECT_FALSE(Is(Rigid3(), 100.0, 1, 320.0f)); }
+
+TEST_F(WellMapped, IsNothingOfAnEarlierSession) {
+  first_of_session_ = FrameId(50);
+  EXPECT_FALSE(Is(Rigid3(), 100.0));
+}
+
+// A thing of this class, or of none, in an image.
+Frame FrameOf(const char* label, double x) {
+  Frame frame;
+  if (label != nullptr) {
+    Detection& detection = frame.detections.emplace_back();
+    detection.label = label;
+    detection.box = {Eigen::Vector2d(x, 10.0), Eigen::Vector2d(x + 50.0, 60.0)};
+  }
+  return frame;
+}
+
+int FollowOne(UnknownThings& things, const Frame& frame, ObjectId object = ObjectId()) {
+  return things.Follow(frame, std::vector<ObjectId>(frame.detections.size(), object));
+}
+
+TEST(UnknownThings, LastForTenFrames) {
+  UnknownThings things;
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(FollowOne(things, FrameOf("cup", 8.0 * i)), 0);
+    FollowOne(things, FrameOf(nullptr, 0.0));  // missed now and then
+  }
+  EXPECT_EQ(FollowOne(things, FrameOf("cup", 72.0)), 1);
+  for (int i = 0; i < 3; ++i) {
+    FollowOne(things, FrameOf(nullptr, 0.0));
+  }
+  EXPECT_EQ(FollowOne(things, FrameOf("cup", 72.0)), 0) << "it was gone for too long";
+}
+
+TEST(UnknownThings, MistakesOfADetectorDoNotLast) {
+  UnknownThings things;
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_EQ(FollowOne(things, FrameOf("cup", i % 2 == 0 ? 10.0 : 300.0 + 60.0 * i)), 0);
+    FollowOne(things, FrameOf(i % 2 == 0 ? "book" : nullptr, 10.0));
+    FollowOne(things, FrameOf(nullptr, 0.0));
+    FollowOne(things, FrameOf("cup", 500.0), ObjectId(3));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam
