@@ -191,8 +191,9 @@ class MadeBuilding {
 
   Ellipsoid EllipsoidAt(size_t index, double time) const {
     const Object& object = objects_[index];
-    // One object after the other is moved.
-    const auto moves = static_cast<size_t>(time / move_every_ + static_cast<double>(index) / 60.0);
+    // One object after the other is moved, the last ones at two of these times before the end.
+    const auto moves =
+        static_cast<size_t>(time / move_every_ + 2.0 + static_cast<double>(index) / 60.0);
     const size_t slot = object.is_movable ? moves / 4 % kSlots : 1;
     const Eigen::Vector3d& place = object.places[slot];
     return {
@@ -409,7 +410,7 @@ class MadeBuilding {
   const Vocabulary* const vocabulary_;
   const double seconds_;
   const double day_;           // s, of daylight and lamplight together
-  const double move_every_;    // s, after which a quarter of the movable objects is elsewhere
+  const double move_every_;    // s; after four of these times each movable object is elsewhere
   std::vector<Point> points_;  // by their place along the wall
   std::vector<Object> objects_;
 };

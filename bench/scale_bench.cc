@@ -252,7 +252,7 @@ class Patrol {
     options.vocabulary = vocabulary_;
     // A robot that works on never reaches the end of its run.
     options.tracking.refine_at_end = false;
-    (void)shift;
+    options.mapping.max_keyframes = shift.max_keyframes;
     return options;
   }
 

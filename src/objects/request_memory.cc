@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-double ObjectRequestRule::TimeAfter(int fruitless_requests, bool is_mature) const {
-  const double time_factor = std::min(is_mature ? max_time_factor_mature : max_time_factor,
-                                      std::exp2(fruitless_requests - patient_requests + 1));
+double ObjectRequestRule::TimeAfter(int fruitless_requests) const {
+  const double time_factor =
+      std::min(max_time_factor, std::exp2(fruitless_requests - patient_requests + 1));
   return time * std::max(1.0, time_factor);
 }
 

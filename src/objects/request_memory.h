@@ -17,10 +17,9 @@ struct ObjectRequestRule {
   // one doubles the time, up to the largest factor.
   int patient_requests = 4;
   double max_time_factor = 16.0;
-  double max_time_factor_mature = 1800.0;  // where the map is mature: 10 minutes
 
   // The time after so many fruitless requests, s.
-  double TimeAfter(int fruitless_requests, bool is_mature = false) const;
+  double TimeAfter(int fruitless_requests) const;
 };
 
 // Counts the keyframes that were requested because of objects and led to no new mapped object.

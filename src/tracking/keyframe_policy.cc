@@ -26,8 +26,7 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
       !evidence.is_known_view && !evidence.is_well_mapped &&
       (is_leaving || lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks);
   const bool lacks_objects =
-      evidence.unknown_objects > 0 &&
-      time >= objects.TimeAfter(evidence.fruitless_requests, evidence.is_well_mapped);
+      evidence.unknown_objects > 0 && time >= objects.TimeAfter(evidence.fruitless_requests);
   const bool seeks_join = evidence.has_islands && time >= time_for_joins;
   const bool is_overdue = time >= max_time_between;
   const bool is_urgent = is_overdue || is_abrupt || is_leaving || lacks_close_points;

@@ -81,7 +81,7 @@ struct KeyframePolicy {
   // Where another keyframe shows the same, tracking counts as strong: the frame finds fewer
   // landmarks than the reference keyframe has because keypoints differ from image to image, and a
   // new keyframe would only double them. So a camera that stays in a place adds no keyframes. Where
-  // the map is mature, things that were not mapped so far are hardly a reason either.
+  // the map is mature, unknown objects are those that LastingChanges tells.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

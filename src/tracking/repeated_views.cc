@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "map/islands.h"
+#include "objects/constraint/point_statistics.h"
+#include "objects/visibility.h"
 #include "tracking/last_frame.h"
 #include "util/id_set.h"
 #include "util/statistics.h"
@@ -138,12 +140,27 @@ bool CoversTheImage(const Sensor& sensor, const Frame& frame,
 
 constexpr int kLastingFrames = 10;
 constexpr int kMostMissed = 2;
-constexpr double kLeastOverlap = 0.4;  // intersection over union of the boxes in two frames
+constexpr double kSamePlace = 0.12;  // of the distance to the camera: 7 degrees
+// A new object is mapped, and one that is gone removed, with three keyframes, if all goes well.
+constexpr int kMostChangeRequests = 8;
+constexpr double kPlaceMemory = 1800.0;  // s; then a place may ask again
+constexpr double kLeastOverlap = 0.4;    // intersection over union of the boxes in two frames
 
 double Overlap(const Eigen::AlignedBox2d& a, const Eigen::AlignedBox2d& b) {
   const Eigen::AlignedBox2d both = a.intersection(b);
   const double area = both.isEmpty() ? 0.0 : both.volume();
   return area / (a.volume() + b.volume() - area);
+}
+
+// Where a detection is: the mean of its depth points, or at the median depth of the landmarks.
+Eigen::Vector3d PositionOf(const Detection& detection, const Map& map, const Sensor& sensor,
+                           const PoseEstimate& estimate) {
+  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
+  if (detection.points.empty()) {
+    const double depth = MedianDepth(map, estimate.cam_from_world, estimate.landmarks);
+    return world_from_cam * sensor.camera.Unproject(detection.box.center(), depth);
+  }
+  return world_from_cam * MeanOf(detection.points.Unpack());
 }
 
 }  // namespace
@@ -218,28 +235,73 @@ bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
   return similar >= kMatureViews;
 }
 
-int UnknownThings::Follow(const Frame& frame, const std::vector<ObjectId>& objects) {
-  for (Thing& thing : things_) {
-    ++thing.missed;
+int LastingChanges::Follow(const Frame& frame, const Map& map, const TrackingContext& context,
+                           const LocalTracking& tracking) {
+  const Rigid3& cam_from_world = tracking.estimate.cam_from_world;
+  camera_ = Inverse(cam_from_world).translation;
+  time_ = frame.timestamp;
+  std::erase_if(places_, [&](const Place& place) { return time_ - place.time > kPlaceMemory; });
+  for (Change& change : changes_) {
+    ++change.missed;
   }
-  for (size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].IsValid()) {
-      continue;
+  for (size_t i = 0; i < tracking.objects.size(); ++i) {
+    if (!tracking.objects[i].IsValid()) {
+      const Detection& detection = frame.detections[i];
+      Note({.gone = {},
+            .label = detection.label,
+            .box = detection.box,
+            .position = PositionOf(detection, map, context.sensor, tracking.estimate)});
     }
-    const Detection& detection = frame.detections[i];
-    const auto known = std::ranges::find_if(things_, [&](const Thing& thing) {
-      return thing.missed > 0 && thing.label == detection.label &&
-             Overlap(thing.box, detection.box) >= kLeastOverlap;
-    });
-    Thing& thing = known != things_.end() ? *known : things_.emplace_back();
-    thing.label = detection.label;
-    thing.box = detection.box;
-    ++thing.seen;
-    thing.missed = 0;
   }
-  std::erase_if(things_, [](const Thing& thing) { return thing.missed > kMostMissed; });
-  return static_cast<int>(std::ranges::count_if(
-      things_, [](const Thing& thing) { return thing.seen >= kLastingFrames; }));
+  for (const ObjectId id : map.keyframes().At(tracking.reference).objects) {
+    const ObjectLandmark* const object = id.IsValid() ? map.objects().Find(id) : nullptr;
+    if (object != nullptr && object->state == ObjectState::kMapped &&
+        std::ranges::find(tracking.objects, id) == tracking.objects.end() &&
+        SeesThrough(context.sensor, frame, cam_from_world, object->ellipsoid,
+                    context.objects.changes.min_seen_through)) {
+      Note({.gone = id,
+            .label = {},
+            .box = {},
+            .position = object->ellipsoid.world_from_object.translation});
+    }
+  }
+  std::erase_if(changes_, [](const Change& change) { return change.missed > kMostMissed; });
+  return static_cast<int>(
+      std::ranges::count_if(changes_, [&](const Change& change) { return IsReason(change); }));
+}
+
+void LastingChanges::Note(const Change& change) {
+  const auto known = std::ranges::find_if(changes_, [&](const Change& other) {
+    return other.missed > 0 && other.gone == change.gone && other.label == change.label &&
+           (change.gone.IsValid() || Overlap(other.box, change.box) >= kLeastOverlap);
+  });
+  const int seen = known != changes_.end() ? known->seen : 0;
+  Change& noted = known != changes_.end() ? *known : changes_.emplace_back();
+  noted = change;
+  noted.seen = seen + 1;
+}
+
+LastingChanges::Place* LastingChanges::FindPlace(const Eigen::Vector3d& position) {
+  const double radius = kSamePlace * (position - camera_).norm();
+  const auto place = std::ranges::find_if(
+      places_, [&](const Place& other) { return (other.position - position).norm() < radius; });
+  return place != places_.end() ? &*place : nullptr;
+}
+
+bool LastingChanges::IsReason(const Change& change) {
+  const Place* const place = FindPlace(change.position);
+  return change.seen >= kLastingFrames && change.missed == 0 &&
+         (place == nullptr || place->requests < kMostChangeRequests);
+}
+
+void LastingChanges::NoteRequest() {
+  for (const Change& change : changes_) {
+    if (IsReason(change)) {
+      Place* const known = FindPlace(change.position);
+      Place& place = known != nullptr ? *known : places_.emplace_back();
+      place = {change.position, place.requests + 1, time_};
+    }
+  }
 }
 
 }  // namespace hullslam

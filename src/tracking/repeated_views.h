@@ -11,6 +11,7 @@
 #include "hullslam/map/map.h"
 #include "tracking/local_map_tracking.h"
 #include "tracking/pose_refinement.h"
+#include "tracking/tracking_context.h"
 
 namespace hullslam {
 
@@ -53,23 +54,41 @@ bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, Frame
 bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
                   FrameId first_of_session, const LocalTracking& tracking);
 
-// Follows the detections that show no mapped object from frame to frame. Where the map is mature,
-// only what stays in the image is a reason for a keyframe: not the mistakes of a detector.
-class UnknownThings {
+// Follows from frame to frame what differs from the map's objects: detections that show no mapped
+// object, and objects of the reference keyframe where the depth image shows what is behind them.
+// Where the map is mature, only such a change that lasts is a reason for a keyframe, not the
+// mistakes of a detector, and only some times at one place: some things can never be mapped.
+class LastingChanges {
  public:
-  // To be called once per frame. `objects` has one entry per detection. Returns how many of the
-  // unknown things were detected, at almost the same place in the image and with the same class, in
-  // ten of the last frames. A thing may be missed twice in a row.
-  int Follow(const Frame& frame, const std::vector<ObjectId>& objects);
+  // To be called once per frame. `tracking` has the final pose. Returns how many changes were seen
+  // in ten of the last frames (they may be missed twice in a row) and are still a reason.
+  int Follow(const Frame& frame, const Map& map, const TrackingContext& context,
+             const LocalTracking& tracking);
+  // A keyframe is made of the last frame because of them.
+  void NoteRequest();
 
  private:
-  struct Thing {
-    std::string label;
-    Eigen::AlignedBox2d box;  // px
-    int seen = 0;             // number of frames
-    int missed = 0;           // since it was seen last
+  struct Change {
+    ObjectId gone;             // invalid: something unknown
+    std::string label;         // of the unknown thing
+    Eigen::AlignedBox2d box;   // of the unknown thing, px
+    Eigen::Vector3d position;  // m, world frame
+    int seen = 0;              // number of frames
+    int missed = 0;            // since it was seen last
   };
-  std::vector<Thing> things_;
+  struct Place {
+    Eigen::Vector3d position;  // m, world frame
+    int requests = 0;
+    double time = 0.0;  // s, of the last one
+  };
+  void Note(const Change& change);
+  Place* FindPlace(const Eigen::Vector3d& position);
+  bool IsReason(const Change& change);
+
+  std::vector<Change> changes_;
+  std::vector<Place> places_;
+  Eigen::Vector3d camera_ = Eigen::Vector3d::Zero();  // m, of the last frame
+  double time_ = 0.0;                                 // s, of the last frame
 };
 
 }  // namespace hullslam

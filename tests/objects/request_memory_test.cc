@@ -47,8 +47,6 @@ TEST(ObjectRequestRule, AsksMoreSeldomAfterSeveralFruitlessRequests) {
     EXPECT_NEAR(rule.TimeAfter(fruitless), 2.0 * rule.TimeAfter(fruitless - 1), 1e-12);
   }
   EXPECT_NEAR(rule.TimeAfter(100), 16.0 / 3.0, 1e-12);
-  EXPECT_DOUBLE_EQ(rule.TimeAfter(5, true), rule.TimeAfter(5));
-  EXPECT_NEAR(rule.TimeAfter(100, true), 600.0, 1e-9) << "where the map is mature";
 }
 
 }  // namespace

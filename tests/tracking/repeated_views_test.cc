@@ -197,42 +197,99 @@ TEST_F(WellMapped, IsNothingOfAnEarlierSession) {
   EXPECT_FALSE(Is(Rigid3(), 100.0));
 }
 
-// A thing of this class, or of none, in an image.
-Frame FrameOf(const char* label, double x) {
-  Frame frame;
-  if (label != nullptr) {
-    Detection& detection = frame.detections.emplace_back();
-    detection.label = label;
-    detection.box = {Eigen::Vector2d(x, 10.0), Eigen::Vector2d(x + 50.0, 60.0)};
+// A camera that does not move, before a wall 3 m away, in a map with one keyframe that shows one
+// mapped object in the middle, 2 m away.
+class Changes : public testing::Test {
+ protected:
+  Changes() {
+    object_ = made_.map.AddObject();
+    ObjectLandmark& object = made_.map.MutableObject(object_);
+    object.state = ObjectState::kMapped;
+    object.has_shape = true;
+    object.ellipsoid = {{Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}},
+                        Eigen::Vector3d::Constant(0.3)};
+    made_.map.MutableKeyframe(KeyframeId(0)).objects = {object_};
+    tracking_.reference = KeyframeId(0);
   }
-  return frame;
-}
 
-int FollowOne(UnknownThings& things, const Frame& frame, ObjectId object = ObjectId()) {
-  return things.Follow(frame, std::vector<ObjectId>(frame.detections.size(), object));
-}
+  // A frame with a thing of this class (null: none) at this column; `object` is what it shows.
+  int Follow(const char* label, double x, ObjectId object = ObjectId(), int depth = 0) {
+    Frame frame;
+    frame.timestamp = time_ += 1.0 / 30.0;
+    tracking_.objects.clear();
+    if (label != nullptr) {
+      Detection& detection = frame.detections.emplace_back();
+      detection.label = label;
+      detection.box = {Eigen::Vector2d(x, 10.0), Eigen::Vector2d(x + 50.0, 60.0)};
+      detection.points = std::vector<Eigen::Vector3d>{{x / 100.0, -1.0, 2.0}};
+      tracking_.objects.push_back(object);
+    }
+    if (depth > 0) {
+      frame.depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(depth)), 1000.0);
+    }
+    const ObjectIndex index;
+    const TrackingOptions options;
+    const ObjectOptions objects;
+    return changes_.Follow(frame, made_.map, {world_.sensor(), options, objects, index}, tracking_);
+  }
 
-TEST(UnknownThings, LastForTenFrames) {
-  UnknownThings things;
+  const SyntheticWorld world_;
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0});
+  ObjectId object_;
+  LocalTracking tracking_;
+  LastingChanges changes_;
+  double time_ = 0.0;
+};
+
+TEST_F(Changes, ThatLastForTenFramesAreAReason) {
   for (int i = 0; i < 9; ++i) {
-    EXPECT_EQ(FollowOne(things, FrameOf("cup", 8.0 * i)), 0);
-    FollowOne(things, FrameOf(nullptr, 0.0));  // missed now and then
+    EXPECT_EQ(Follow("cup", 8.0 * i), 0);
+    Follow(nullptr, 0.0);  // missed now and then
   }
-  EXPECT_EQ(FollowOne(things, FrameOf("cup", 72.0)), 1);
+  EXPECT_EQ(Follow("cup", 72.0), 1);
   for (int i = 0; i < 3; ++i) {
-    FollowOne(things, FrameOf(nullptr, 0.0));
+    Follow(nullptr, 0.0);
   }
-  EXPECT_EQ(FollowOne(things, FrameOf("cup", 72.0)), 0) << "it was gone for too long";
+  EXPECT_EQ(Follow("cup", 72.0), 0) << "it was gone for too long";
 }
 
-TEST(UnknownThings, MistakesOfADetectorDoNotLast) {
-  UnknownThings things;
+TEST_F(Changes, MistakesOfADetectorAreNoReason) {
   for (int i = 0; i < 30; ++i) {
-    EXPECT_EQ(FollowOne(things, FrameOf("cup", i % 2 == 0 ? 10.0 : 300.0 + 60.0 * i)), 0);
-    FollowOne(things, FrameOf(i % 2 == 0 ? "book" : nullptr, 10.0));
-    FollowOne(things, FrameOf(nullptr, 0.0));
-    FollowOne(things, FrameOf("cup", 500.0), ObjectId(3));
+    EXPECT_EQ(Follow("cup", i % 2 == 0 ? 10.0 : 300.0 + 60.0 * i), 0);
+    EXPECT_EQ(Follow(i % 2 == 0 ? "book" : nullptr, 10.0), 0);
+    EXPECT_EQ(Follow(nullptr, 0.0), 0);
+    EXPECT_EQ(Follow("cup", 500.0, ObjectId(3)), 0) << "it is known";
   }
+}
+
+TEST_F(Changes, AreAReasonEightTimesInHalfAnHour) {
+  const auto count_requests = [&](double x) {
+    int requests = 0;
+    for (int i = 0; i < 100; ++i) {
+      if (Follow("cup", x) > 0) {
+        changes_.NoteRequest();
+        ++requests;
+      }
+    }
+    return requests;
+  };
+  EXPECT_EQ(count_requests(10.0), 8);
+  EXPECT_EQ(count_requests(10.0), 0);
+  EXPECT_EQ(count_requests(300.0), 8) << "at another place";
+  time_ += 1900.0;
+  EXPECT_EQ(count_requests(10.0), 8) << "after half an hour";
+}
+
+TEST_F(Changes, AnObjectThatIsGoneIsAReason) {
+  int reasons = 0;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(Follow(nullptr, 0.0, ObjectId(), 2000), 0) << "something is there";
+  }
+  for (int i = 0; i < 20; ++i) {
+    reasons += Follow(nullptr, 0.0, ObjectId(), 3000);
+  }
+  EXPECT_EQ(reasons, 11);
+  EXPECT_EQ(Follow("cup", 10.0, object_, 3000), 0) << "it is found";
 }
 
 }  // namespace
