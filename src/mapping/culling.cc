@@ -324,19 +324,16 @@ bool ConnectsPlaces(const Map& map, KeyframeId id) {
   });
 }
 
-bool HasFewViews(const Map& map, const Keyframe& keyframe, size_t min_views) {
-  return std::ranges::any_of(keyframe.objects, [&](ObjectId object) {
-    return object.IsValid() && map.objects().At(object).observations.size() <= min_views;
-  });
-}
-
 // How redundant a keyframe is, from -1 to 1. Absent if it has to stay.
 std::optional<double> JudgeForBound(const Map& map, KeyframeId id, KeyframeId current,
                                     const Sensor& sensor, size_t min_object_views) {
   const Keyframe* const keyframe = map.keyframes().Find(id);
+  const auto has_few_views = [&](ObjectId object) {
+    return object.IsValid() && map.objects().At(object).observations.size() <= min_object_views;
+  };
   if (keyframe == nullptr || !keyframe->parent.IsValid() ||
       AgeOf(map, id, current, kYoungKeyframes + 1) <= kYoungKeyframes ||
-      HasFewViews(map, *keyframe, min_object_views) || ConnectsPlaces(map, id)) {
+      std::ranges::any_of(keyframe->objects, has_few_views) || ConnectsPlaces(map, id)) {
     return std::nullopt;
   }
   Redundancy close;

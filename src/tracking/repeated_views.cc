@@ -94,10 +94,6 @@ constexpr double kMatureTime = 60.0;  // s
 constexpr int kMatureViews = 3;
 constexpr double kSimilarAngle = 0.26;  // rad, between two directions to a point: 15 degrees
 constexpr double kSimilarZoom = 0.35;   // logarithm of the ratio of distances
-constexpr int kColumns = 4;             // parts of the image
-constexpr int kRows = 3;
-constexpr int kFewKeypoints = 8;       // a part with fewer says nothing
-constexpr double kFewLandmarks = 0.1;  // with a smaller share a part of the image is new
 
 // Whether a keyframe shows most of the points from a similar direction and distance.
 bool ShowsSimilarly(const Sensor& sensor, const View& view, const Rigid3& keyframe_from_frame) {
@@ -113,29 +109,21 @@ bool ShowsSimilarly(const Sensor& sensor, const View& view, const Rigid3& keyfra
          static_cast<std::ptrdiff_t>(view.points.size());
 }
 
-// Whether no more than one part of the image has keypoints, but hardly any landmark.
+// Whether at most one part of the image is new: of its keypoints, fewer than a tenth show
+// landmarks, also if it had eight fewer.
 bool CoversTheImage(const Sensor& sensor, const Frame& frame,
                     const std::vector<LandmarkId>& landmarks) {
-  struct Part {
-    int keypoints = 0;
-    int landmarks = 0;
-  };
-  std::array<Part, size_t{kColumns} * kRows> parts;
+  std::array<int, 12> surplus{};  // by part, of landmarks times ten over keypoints
   const PinholeCamera::Bounds& bounds = sensor.bounds;
   for (size_t i = 0; i < landmarks.size(); ++i) {
     const Eigen::Vector2d pixel = frame.features.keypoints[i].undistorted.cast<double>();
     const double x = (pixel.x() - bounds.min_x) / (bounds.max_x - bounds.min_x);
     const double y = (pixel.y() - bounds.min_y) / (bounds.max_y - bounds.min_y);
-    const int column = std::clamp(static_cast<int>(kColumns * x), 0, kColumns - 1);
-    const int row = std::clamp(static_cast<int>(kRows * y), 0, kRows - 1);
-    Part& part = parts[static_cast<size_t>(row * kColumns + column)];
-    ++part.keypoints;
-    part.landmarks += landmarks[i].IsValid() ? 1 : 0;
+    const int column = std::clamp(static_cast<int>(4.0 * x), 0, 3);
+    const int row = std::clamp(static_cast<int>(3.0 * y), 0, 2);
+    surplus[static_cast<size_t>(4 * row + column)] += landmarks[i].IsValid() ? 9 : -1;
   }
-  return std::ranges::count_if(parts, [](const Part& part) {
-           return part.keypoints >= kFewKeypoints &&
-                  part.landmarks < kFewLandmarks * part.keypoints;
-         }) <= 1;
+  return std::ranges::count_if(surplus, [](int of_part) { return of_part < -8; }) <= 1;
 }
 
 constexpr int kLastingFrames = 10;
