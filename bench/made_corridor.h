@@ -75,6 +75,35 @@ class MadeCorridor {
     return frame;
   }
 
+  // The outline of a detection whose mask is the ellipse.
+  static void Outline(const Ellipse& ellipse, Detection& detection) {
+    detection.hull = ellipse.Polygon(64);
+    detection.contour = detection.hull;
+    detection.box = ellipse.Bounds();
+    for (int k = 0; k < 16; ++k) {
+      const double angle = k * std::numbers::pi / 8.0;
+      const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+      detection.lines.push_back(
+          {{normal, -normal.dot(ellipse.center) - ellipse.HalfExtent(normal)}, false});
+    }
+  }
+
+  // Lists the keypoints that are on the object.
+  static void AddKeypointsIn(const Ellipse& ellipse, const Ellipsoid& object,
+                             const Rigid3& cam_from_world, const FrameFeatures& features,
+                             Detection& detection) {
+    const double depth = (cam_from_world * object.world_from_object.translation).z();
+    const Eigen::Matrix2d inverse_shape = ellipse.shape.inverse();
+    for (uint32_t i = 0; i < features.size(); ++i) {
+      const Eigen::Vector2d offset =
+          features.keypoints[i].undistorted.cast<double>() - ellipse.center;
+      if (offset.dot(inverse_shape * offset) <= 1.0 &&
+          std::abs(static_cast<double>(features.depth[i]) - depth) < 0.2) {
+        detection.keypoints.push_back(i);
+      }
+    }
+  }
+
  private:
   static constexpr double kStep = 0.04;  // m per frame
   static constexpr double kReach = 3.0;  // m along the wall that may be in the image
@@ -190,18 +219,6 @@ class MadeCorridor {
     }
   }
 
-  static void Outline(const Ellipse& ellipse, Detection& detection) {
-    detection.hull = ellipse.Polygon(64);
-    detection.contour = detection.hull;
-    detection.box = ellipse.Bounds();
-    for (int k = 0; k < 16; ++k) {
-      const double angle = k * std::numbers::pi / 8.0;
-      const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-      detection.lines.push_back(
-          {{normal, -normal.dot(ellipse.center) - ellipse.HalfExtent(normal)}, false});
-    }
-  }
-
   static void AddPointsOn(const Ellipsoid& object, const Rigid3& cam_from_world,
                           Detection& detection) {
     std::vector<Eigen::Vector3d> points;
@@ -209,21 +226,6 @@ class MadeCorridor {
       points.push_back(cam_from_world * FrontPoint(object, i % 10 / 4.5 - 1.0, i / 10 / 4.5 - 1.0));
     }
     detection.points = points;
-  }
-
-  static void AddKeypointsIn(const Ellipse& ellipse, const Ellipsoid& object,
-                             const Rigid3& cam_from_world, const FrameFeatures& features,
-                             Detection& detection) {
-    const double depth = (cam_from_world * object.world_from_object.translation).z();
-    const Eigen::Matrix2d inverse_shape = ellipse.shape.inverse();
-    for (uint32_t i = 0; i < features.size(); ++i) {
-      const Eigen::Vector2d offset =
-          features.keypoints[i].undistorted.cast<double>() - ellipse.center;
-      if (offset.dot(inverse_shape * offset) <= 1.0 &&
-          std::abs(static_cast<double>(features.depth[i]) - depth) < 0.2) {
-        detection.keypoints.push_back(i);
-      }
-    }
   }
 
   const Sensor& sensor_;

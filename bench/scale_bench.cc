@@ -2,24 +2,38 @@
 // What grows with the map and with the time: a long walk along a made-up corridor, or to and fro in
 // it, through the whole sequential system. Prints, at 10, 20, 50 and 100 % of the way, what a frame
 // and a keyframe cost at that point and how much memory the keyframes and the whole system take.
+//
+// With --hours it is a robot that works in one building (MadeBuilding), and each hour has a line.
+// Times of frames are processor times of the thread that calls Track: in the sequential pipeline
+// with mapping, with --threaded without.
 #include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "hullslam/geometry/alignment.h"
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/system/system.h"
 #include "live/live_view.h"
+#include "made_building.h"
 #include "made_corridor.h"
 #include "made_map.h"
 #include "map_bytes.h"
@@ -176,6 +190,204 @@ void Run(size_t frames, size_t turn, int port) {
   PrintParts(*system.map());
 }
 
+// Milliseconds of processor time that this thread has used.
+double ThreadMs() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+// The largest memory of the process so far, MB.
+double PeakMb() {
+  std::ifstream in("/proc/self/status");
+  std::string word;
+  while (in >> word && word != "VmHWM:") {
+  }
+  double kilobytes = 0.0;
+  in >> kilobytes;
+  return 1e-3 * kilobytes;
+}
+
+struct Shift {
+  double hours = 10.0;
+  PipelineKind kind = PipelineKind::kSequential;
+  int max_keyframes = 0;
+};
+
+// A robot at work, and what is known about it so far.
+class Patrol {
+ public:
+  explicit Patrol(const Shift& shift)
+      : shift_(shift),
+        vocabulary_(std::make_shared<const Vocabulary>(ReadVocabulary(FindDefaultVocabulary()))),
+        sensor_(BenchSensor()),
+        building_(3600.0 * shift.hours, sensor_, vocabulary_.get()),
+        system_(OptionsFor(shift), shift.kind) {}
+
+  void Run() {
+    fmt::print("{:>5} {:>9} {:>6} {:>9} {:>7} {:>23} {:>16} {:>5} {:>6} {:>5} {:>6} {:>6} {:>5}\n",
+               "hour", "keyframes", "made", "landmarks", "objects", "frame, ms: median/99%/max",
+               "over 33 ms/lost", "heap", "loops", "false", "ATE, m", "map MB", "s");
+    const double seconds = 3600.0 * shift_.hours;
+    const double step = std::min(3600.0, seconds / 10.0);
+    double next = step;
+    const auto frames = static_cast<uint32_t>(seconds * sensor_.frames_per_second);
+    for (uint32_t i = 0; i < frames; ++i) {
+      const double time = i / sensor_.frames_per_second;
+      if (building_.HasImage(time)) {
+        TrackFrame(time, i);
+      }
+      if (i + 1 == frames || time >= next) {
+        PrintHour(time);
+        next += step;
+      }
+    }
+    Judge(seconds);
+  }
+
+ private:
+  SystemOptions OptionsFor(const Shift& shift) const {
+    SystemOptions options;
+    options.camera = sensor_.camera;
+    options.vocabulary = vocabulary_;
+    // A robot that works on never reaches the end of its run.
+    options.tracking.refine_at_end = false;
+    options.mapping.max_keyframes = shift.max_keyframes;
+    return options;
+  }
+
+  void TrackFrame(double time, uint32_t number) {
+    BuiltFrame built;
+    built.frame = building_.MakeFrame(time, number);
+    const double start = ThreadMs();
+    const TrackedFrame tracked = system_.Track(std::move(built));
+    const double spent = ThreadMs() - start;
+    times_.push_back(spent);
+    over_ += spent > 1e3 / sensor_.frames_per_second ? 1 : 0;
+    lost_ += tracked.state == TrackingState::kTracked ? 0 : 1;
+    const std::shared_ptr<const Map> map = system_.map();
+    if (map->correction_count() != corrections_) {
+      corrections_ = map->correction_count();
+      CountLoops(*map);
+    }
+  }
+
+  Eigen::Vector3d TrueCenter(const Frame& frame) const {
+    return Inverse(building_.CamFromWorld(frame.timestamp)).translation;
+  }
+
+  void CountLoops(const Map& map) {
+    constexpr double kFar = 4.0;  // m; what the two see has nothing in common
+    for (const auto& [id, keyframe] : map.keyframes()) {
+      for (const KeyframeId other : keyframe.loops) {
+        if (other < id && loops_.emplace(other, id).second) {
+          const Frame& frame = *map.keyframes().At(other).frame;
+          false_loops_ += (TrueCenter(frame) - TrueCenter(*keyframe.frame)).norm() > kFar ? 1 : 0;
+        }
+      }
+    }
+  }
+
+  // The root of the mean squared error of the positions of every 15th frame in the current map, m.
+  // Keeps the alignment.
+  double Ate() {
+    const std::shared_ptr<const Map> map = system_.map();
+    std::vector<Eigen::Vector3d> estimate;
+    std::vector<Eigen::Vector3d> truth;
+    for (size_t i = 0; i < system_.frames().size(); i += 15) {
+      const TrackedFrame& frame = system_.frames()[i];
+      if (frame.from_keyframe && map->NearestAlive(frame.from_keyframe->reference).IsValid()) {
+        estimate.push_back(Inverse(map->CamFromWorld(*frame.from_keyframe)).translation);
+        truth.push_back(Inverse(building_.CamFromWorld(frame.timestamp)).translation);
+      }
+    }
+    truth_from_map_ = AlignPoints(estimate, truth, AlignmentKind::kSe3).target_from_source;
+    double sum = 0.0;
+    for (size_t i = 0; i < truth.size(); ++i) {
+      sum += (truth_from_map_ * estimate[i] - truth[i]).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(truth.size()));
+  }
+
+  // Writes the map. Returns its size, MB.
+  double Save() {
+    const auto path = std::filesystem::temp_directory_path() / "scale_bench.map";
+    const auto start = std::chrono::steady_clock::now();
+    WriteMap(path, *system_.map(), MapSettingsOf(system_.options()));
+    save_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double size = 1e-6 * static_cast<double>(std::filesystem::file_size(path));
+    std::filesystem::remove(path);
+    return size;
+  }
+
+  void PrintHour(double time) {
+    const size_t heap = HeapBytes();
+    const std::shared_ptr<const Map> map = system_.map();
+    std::sort(times_.begin(), times_.end());
+    const double ate = Ate();
+    map_mb_ = Save();
+    fmt::print(
+        "{:>5.2f} {:>9} {:>6} {:>9} {:>7} {:>11.2f} {:>5.2f} {:>7.1f} {:>9} {:>6} {:>5.1f} {:>6} "
+        "{:>5} {:>6.3f} {:>6.1f} {:>5.0f}\n",
+        time / 3600.0, map->keyframes().size(), map->keyframes().NextId().value,
+        map->landmarks().size(), map->objects().size(), times_[times_.size() / 2],
+        times_[times_.size() * 99 / 100], times_.back(), over_, lost_,
+        1e-6 * static_cast<double>(heap), loops_.size(), false_loops_, ate, map_mb_,
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
+    std::fflush(stdout);
+    times_.clear();
+    over_ = 0;
+    lost_ = 0;
+  }
+
+  // Prints how the mapped objects compare with the true ones, and the memory.
+  void Judge(double time) const {
+    constexpr double kNear = 0.12;  // m
+    const std::shared_ptr<const Map> map = system_.map();
+    const std::vector<MadeBuilding::Truth> truth = building_.ObjectsAt(time);
+    std::vector<size_t> found(truth.size());
+    size_t wrong = 0;
+    for (const auto& [id, object] : map->objects()) {
+      if (object.state != ObjectState::kMapped) {
+        continue;
+      }
+      const Eigen::Vector3d center =
+          truth_from_map_ * object.ellipsoid.world_from_object.translation;
+      const auto at = std::ranges::find_if(truth, [&](const MadeBuilding::Truth& real) {
+        return (real.ellipsoid.world_from_object.translation - center).norm() < kNear;
+      });
+      if (at != truth.end() && at->label == object.Label()) {
+        ++found[static_cast<size_t>(at - truth.begin())];
+      } else {
+        ++wrong;
+      }
+    }
+    const auto missing = std::ranges::count(found, size_t{0});
+    const auto twice = std::ranges::count_if(found, [](size_t count) { return count > 1; });
+    fmt::print(
+        "objects at the end: {} of {} right, {} missing, {} mapped twice, {} where none is\n"
+        "peak memory {:.0f} MB, {:.1f} times the map of {:.1f} MB, which takes {:.2f} s to write\n",
+        truth.size() - static_cast<size_t>(missing), truth.size(), missing, twice, wrong, PeakMb(),
+        PeakMb() / map_mb_, map_mb_, save_s_);
+  }
+
+  const Shift shift_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const std::shared_ptr<const Vocabulary> vocabulary_;
+  const Sensor sensor_;
+  const MadeBuilding building_;
+  System system_;
+  std::vector<double> times_;  // of the frames of this hour, ms
+  size_t over_ = 0;
+  size_t lost_ = 0;
+  uint32_t corrections_ = 0;
+  std::set<std::pair<KeyframeId, KeyframeId>> loops_;
+  size_t false_loops_ = 0;
+  Rigid3 truth_from_map_;
+  double map_mb_ = 0.0;
+  double save_s_ = 0.0;
+};
+
 }  // namespace
 }  // namespace hullslam
 
@@ -183,6 +395,11 @@ int main(int argc, char** argv) {
   size_t frames = 10000;
   size_t turn = 0;
   int port = -1;
+  hullslam::Shift shift{.hours = 0.0};
+  if (argc > 1 && std::string_view(argv[argc - 1]) == "--threaded") {
+    shift.kind = hullslam::PipelineKind::kThreaded;
+    --argc;
+  }
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::string_view(argv[i]) == "--frames") {
       frames = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
@@ -190,6 +407,10 @@ int main(int argc, char** argv) {
       turn = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--view") {
       port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
+    } else if (std::string_view(argv[i]) == "--hours") {
+      shift.hours = std::strtod(argv[i + 1], nullptr);
+    } else if (std::string_view(argv[i]) == "--max-keyframes") {
+      shift.max_keyframes = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else {
       frames = 0;
     }
@@ -199,10 +420,15 @@ int main(int argc, char** argv) {
     fmt::print(
         stderr,
         "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
+        "       scale_bench --hours H [--max-keyframes N] [--threaded]\n"
         "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
         "frames\n");
     return 2;
   }
-  hullslam::Run(frames, turn > 0 ? turn : frames, port);
+  if (shift.hours > 0.0) {
+    hullslam::Patrol(shift).Run();
+  } else {
+    hullslam::Run(frames, turn > 0 ? turn : frames, port);
+  }
   return 0;
 }

@@ -17,6 +17,7 @@
 #include "files/staged_file.h"
 #include "hullslam/util/error.h"
 #include "map_files/map_records.h"
+#include "util/latest_worker.h"
 
 namespace hullslam {
 namespace {
@@ -232,6 +233,30 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
   records.End();
   WriteTables(map, records);
   records.Commit();
+}
+
+MapSaver::MapSaver(const fs::path& path, const MapSettings& settings, double seconds,
+                   std::function<void(const std::string& reason)> on_failure)
+    : seconds_(seconds),
+      saved_(std::chrono::steady_clock::now()),
+      worker_(std::make_unique<LatestWorker<std::shared_ptr<const Map>>>(
+          [path, settings, on_failure = std::move(on_failure)](std::shared_ptr<const Map> map) {
+            try {
+              WriteMap(path, *map, settings);
+            } catch (const InputError& error) {
+              on_failure(error.what());
+            }
+          })) {}
+
+MapSaver::~MapSaver() = default;
+
+void MapSaver::Offer(const std::shared_ptr<const Map>& map) {
+  const auto now = std::chrono::steady_clock::now();
+  if (map != nullptr && !map->keyframes().empty() && !worker_->IsBusy() &&
+      std::chrono::duration<double>(now - saved_).count() >= seconds_) {
+    worker_->Post(map);
+    saved_ = now;
+  }
 }
 
 StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }

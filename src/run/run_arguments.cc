@@ -102,8 +102,12 @@ void AddSensorArguments(CLI::App& app, const DatasetHelp& help, bool has_depth, 
 void AddCommonArguments(CLI::App& app, RunArguments& arguments) {
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);
-  app.add_option("--save-map", arguments.save_map,
-                 "file for the map at the end of the run; replaces an earlier one");
+  auto* const save_map =
+      app.add_option("--save-map", arguments.save_map,
+                     "file for the map at the end of the run; replaces an earlier one");
+  auto* const checkpoint = app.add_option("--checkpoint", arguments.checkpoint,
+                                          "also save the map so often during the run, s");
+  ExpectNumber(*checkpoint->needs(save_map), 0.01, 1e6);
   auto* const load_map = app.add_option(
       "--load-map", arguments.load_map,
       "file of --save-map: the run goes on with this map, as a new session. Tracking "

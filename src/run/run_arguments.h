@@ -40,6 +40,7 @@ struct RunArguments {
   std::filesystem::path output = "out";
   bool overwrite = false;
   std::filesystem::path save_map;  // empty: not saved
+  double checkpoint = 0.0;         // s; 0: the map is saved at the end only
   std::filesystem::path load_map;  // empty: a new map
   std::filesystem::path mcap;      // empty: not written
   bool localization = false;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hullslam/datasets/input_checks.h"
+#include "hullslam/map_files/map_file.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
@@ -122,6 +123,8 @@ void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>&
                      run.settings.options.camera, run.masks, run.system, run.live.IsOn(),
                      &Interruption());
   size_t warnings = 0;
+  MapSaver saver(run.arguments.save_map, MapSettingsOf(run.settings.options),
+                 run.arguments.checkpoint, PrintFailure);
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited = run.live.BeforeFrame(run.system, IsInterrupted, [&] {
@@ -148,6 +151,9 @@ void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>&
     const Clock::time_point begin = Clock::now();
     const TrackedFrame frame = frames.Track(*loaded);
     PrintNewWarnings(run.system, warnings, progress);
+    if (run.arguments.checkpoint > 0.0) {
+      saver.Offer(run.system.map());
+    }
     run.live.AfterFrame({.grey = loaded->grey,
                          .number = result.given,
                          .build_ms = loaded->build_ms,

@@ -10,6 +10,7 @@
 #include "system/loop_stages.h"
 #include "system/pipeline.h"
 #include "tracking/tracker.h"
+#include "util/between_threads.h"
 
 namespace hullslam {
 namespace {
@@ -22,7 +23,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
         tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
             sensor, options.mapping, options.objects,
-            [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary),
+            [this](std::shared_ptr<const Map> map) { map_.Publish(std::move(map)); },
+            options.vocabulary),
         loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
   void Begin(PipelineStart start) override {
@@ -45,7 +47,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();
-    Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
+    Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), MapperStatus());
     mapper_.ExpectWideSteps(tracker_.HasWideSteps());
     if (result.message) {
       EditMap([&] { Process(*result.message); });
@@ -70,7 +72,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
                              : std::vector<TrackedFrame>();
   }
 
-  std::shared_ptr<const Map> map() const override { return map_; }
+  std::shared_ptr<const Map> map() const override { return map_.Get(); }
 
   int busy_threads() const override { return 0; }
 
@@ -99,7 +101,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
   // Processes a message and runs the stages that follow it, whose corrections are messages too.
   void Process(const MapMessage& message) {
     const bool is_applied = mapper_.Process(message, nullptr);
-    StartNextStage(message, is_applied, options_, mapper_, map_, *this);
+    StartNextStage(message, is_applied, options_, mapper_, map_.Get(), *this);
   }
 
   void Seek(LoopQuery query) override {
@@ -143,7 +145,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
 
   const Sensor& sensor_;
   const SystemOptions options_;
-  std::shared_ptr<const Map> map_;
+  Published<Map> map_;
   Tracker tracker_;
   Mapper mapper_;
   LoopCloser loop_closer_;

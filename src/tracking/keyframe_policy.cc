@@ -23,7 +23,7 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
   const bool is_leaving = evidence.next_overlap < min_next_overlap;
   const bool is_weak =
-      !evidence.is_known_view &&
+      !evidence.is_known_view && !evidence.is_well_mapped &&
       (is_leaving || lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks);
   const bool lacks_objects =
       evidence.unknown_objects > 0 && time >= objects.TimeAfter(evidence.fruitless_requests);

@@ -21,8 +21,9 @@ struct KeyframeEvidence {
   int unknown_objects = 0;           // detections that show no mapped object
   int fruitless_requests =
       0;  // keyframes requested for objects alone since an object was last mapped
-  double next_overlap = 1.0;   // share of the reference's view in the next image (NextOverlap)
-  bool is_known_view = false;  // another keyframe shows the same (IsKnownView)
+  double next_overlap = 1.0;    // share of the reference's view in the next image (NextOverlap)
+  bool is_known_view = false;   // another keyframe shows the same (IsKnownView)
+  bool is_well_mapped = false;  // the map is mature here (IsWellMapped)
   size_t keyframes = 0;
   // Parts of the map are not joined to one another, and the frame may help to join them
   // (JoinRequests).
@@ -79,7 +80,8 @@ struct KeyframePolicy {
   //
   // Where another keyframe shows the same, tracking counts as strong: the frame finds fewer
   // landmarks than the reference keyframe has because keypoints differ from image to image, and a
-  // new keyframe would only double them. So a camera that stays in a place adds no keyframes.
+  // new keyframe would only double them. So a camera that stays in a place adds no keyframes. Where
+  // the map is mature, unknown objects are those that LastingChanges tells.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

@@ -3,11 +3,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
 #include "map/islands.h"
+#include "objects/constraint/point_statistics.h"
+#include "objects/visibility.h"
 #include "tracking/last_frame.h"
 #include "util/id_set.h"
 #include "util/statistics.h"
@@ -87,6 +90,67 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
   return static_cast<double>(found) >= kLeastFound * static_cast<double>(landmarks);
 }
 
+constexpr double kMatureTime = 60.0;  // s
+constexpr int kMatureViews = 3;
+constexpr double kSimilarAngle = 0.26;  // rad, between two directions to a point: 15 degrees
+constexpr double kSimilarZoom = 0.35;   // logarithm of the ratio of distances
+
+// Whether a keyframe shows most of the points from a similar direction and distance.
+bool ShowsSimilarly(const Sensor& sensor, const View& view, const Rigid3& keyframe_from_frame) {
+  const Eigen::Vector3d camera = keyframe_from_frame.translation;
+  const auto is_similar = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d there = keyframe_from_frame * point;
+    const Eigen::Vector3d ray = there - camera;
+    return there.z() > 0.0 && std::abs(std::log(there.norm() / point.norm())) < kSimilarZoom &&
+           std::atan2(there.cross(ray).norm(), there.dot(ray)) < kSimilarAngle &&
+           sensor.bounds.Contains(sensor.camera.Project(there));
+  };
+  return 2 * std::ranges::count_if(view.points, is_similar) >
+         static_cast<std::ptrdiff_t>(view.points.size());
+}
+
+// Whether at most one part of the image is new: of its keypoints, fewer than a tenth show
+// landmarks, also if it had eight fewer.
+bool CoversTheImage(const Sensor& sensor, const Frame& frame,
+                    const std::vector<LandmarkId>& landmarks) {
+  std::array<int, 12> surplus{};  // by part, of landmarks times ten over keypoints
+  const PinholeCamera::Bounds& bounds = sensor.bounds;
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    const Eigen::Vector2d pixel = frame.features.keypoints[i].undistorted.cast<double>();
+    const double x = (pixel.x() - bounds.min_x) / (bounds.max_x - bounds.min_x);
+    const double y = (pixel.y() - bounds.min_y) / (bounds.max_y - bounds.min_y);
+    const int column = std::clamp(static_cast<int>(4.0 * x), 0, 3);
+    const int row = std::clamp(static_cast<int>(3.0 * y), 0, 2);
+    surplus[static_cast<size_t>(4 * row + column)] += landmarks[i].IsValid() ? 9 : -1;
+  }
+  return std::ranges::count_if(surplus, [](int of_part) { return of_part < -8; }) <= 1;
+}
+
+constexpr int kLastingFrames = 10;
+constexpr int kMostMissed = 2;
+constexpr double kSamePlace = 0.12;  // of the distance to the camera: 7 degrees
+// A new object is mapped, and one that is gone removed, with three keyframes, if all goes well.
+constexpr int kMostChangeRequests = 8;
+constexpr double kPlaceMemory = 1800.0;  // s; then a place may ask again
+constexpr double kLeastOverlap = 0.4;    // intersection over union of the boxes in two frames
+
+double Overlap(const Eigen::AlignedBox2d& a, const Eigen::AlignedBox2d& b) {
+  const Eigen::AlignedBox2d both = a.intersection(b);
+  const double area = both.isEmpty() ? 0.0 : both.volume();
+  return area / (a.volume() + b.volume() - area);
+}
+
+// Where a detection is: the mean of its depth points, or at the median depth of the landmarks.
+Eigen::Vector3d PositionOf(const Detection& detection, const Map& map, const Sensor& sensor,
+                           const PoseEstimate& estimate) {
+  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
+  if (detection.points.empty()) {
+    const double depth = MedianDepth(map, estimate.cam_from_world, estimate.landmarks);
+    return world_from_cam * sensor.camera.Unproject(detection.box.center(), depth);
+  }
+  return world_from_cam * MeanOf(detection.points.Unpack());
+}
+
 }  // namespace
 
 bool JoinRequests::MayAskAgain(const Map& map, const Sensor& sensor, KeyframeId reference,
@@ -135,6 +199,97 @@ bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, Frame
   return is_known(reference) ||
          std::any_of(covisible.begin(), covisible.end(),
                      [&](const Covisible& other) { return is_known(other.keyframe); });
+}
+
+bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
+                  FrameId first_of_session, const LocalTracking& tracking) {
+  const PoseEstimate& estimate = tracking.estimate;
+  if (2 * static_cast<size_t>(estimate.inliers) < tracking.visible.size() ||
+      !CoversTheImage(sensor, frame, estimate.landmarks)) {
+    return false;
+  }
+  const View view = ViewOf(map, estimate);
+  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
+  const auto is_similar = [&](KeyframeId id) {
+    const Keyframe& keyframe = map.keyframes().At(id);
+    return keyframe.frame->id >= first_of_session &&
+           frame.timestamp - keyframe.frame->timestamp > kMatureTime &&
+           ShowsSimilarly(sensor, view, keyframe.cam_from_world * world_from_cam);
+  };
+  int similar = is_similar(tracking.reference) ? 1 : 0;
+  for (const Covisible& other : map.keyframes().At(tracking.reference).covisible) {
+    similar += similar < kMatureViews && is_similar(other.keyframe) ? 1 : 0;
+  }
+  return similar >= kMatureViews;
+}
+
+int LastingChanges::Follow(const Frame& frame, const Map& map, const TrackingContext& context,
+                           const LocalTracking& tracking) {
+  const Rigid3& cam_from_world = tracking.estimate.cam_from_world;
+  camera_ = Inverse(cam_from_world).translation;
+  time_ = frame.timestamp;
+  std::erase_if(places_, [&](const Place& place) { return time_ - place.time > kPlaceMemory; });
+  for (Change& change : changes_) {
+    ++change.missed;
+  }
+  for (size_t i = 0; i < tracking.objects.size(); ++i) {
+    if (!tracking.objects[i].IsValid()) {
+      const Detection& detection = frame.detections[i];
+      Note({.gone = {},
+            .label = detection.label,
+            .box = detection.box,
+            .position = PositionOf(detection, map, context.sensor, tracking.estimate)});
+    }
+  }
+  for (const ObjectId id : map.keyframes().At(tracking.reference).objects) {
+    const ObjectLandmark* const object = id.IsValid() ? map.objects().Find(id) : nullptr;
+    if (object != nullptr && object->state == ObjectState::kMapped &&
+        std::ranges::find(tracking.objects, id) == tracking.objects.end() &&
+        SeesThrough(context.sensor, frame, cam_from_world, object->ellipsoid,
+                    context.objects.changes.min_seen_through)) {
+      Note({.gone = id,
+            .label = {},
+            .box = {},
+            .position = object->ellipsoid.world_from_object.translation});
+    }
+  }
+  std::erase_if(changes_, [](const Change& change) { return change.missed > kMostMissed; });
+  return static_cast<int>(
+      std::ranges::count_if(changes_, [&](const Change& change) { return IsReason(change); }));
+}
+
+void LastingChanges::Note(const Change& change) {
+  const auto known = std::ranges::find_if(changes_, [&](const Change& other) {
+    return other.missed > 0 && other.gone == change.gone && other.label == change.label &&
+           (change.gone.IsValid() || Overlap(other.box, change.box) >= kLeastOverlap);
+  });
+  const int seen = known != changes_.end() ? known->seen : 0;
+  Change& noted = known != changes_.end() ? *known : changes_.emplace_back();
+  noted = change;
+  noted.seen = seen + 1;
+}
+
+LastingChanges::Place* LastingChanges::FindPlace(const Eigen::Vector3d& position) {
+  const double radius = kSamePlace * (position - camera_).norm();
+  const auto place = std::ranges::find_if(
+      places_, [&](const Place& other) { return (other.position - position).norm() < radius; });
+  return place != places_.end() ? &*place : nullptr;
+}
+
+bool LastingChanges::IsReason(const Change& change) {
+  const Place* const place = FindPlace(change.position);
+  return change.seen >= kLastingFrames && change.missed == 0 &&
+         (place == nullptr || place->requests < kMostChangeRequests);
+}
+
+void LastingChanges::NoteRequest() {
+  for (const Change& change : changes_) {
+    if (IsReason(change)) {
+      Place* const known = FindPlace(change.position);
+      Place& place = known != nullptr ? *known : places_.emplace_back();
+      place = {change.position, place.requests + 1, time_};
+    }
+  }
 }
 
 }  // namespace hullslam

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
+#include "tracking/local_map_tracking.h"
 #include "tracking/pose_refinement.h"
+#include "tracking/tracking_context.h"
 
 namespace hullslam {
 
@@ -41,5 +45,50 @@ class JoinRequests {
 // all places anew, because things may have changed.
 bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, FrameId first_of_session,
                  KeyframeId reference, const PoseEstimate& estimate);
+
+// Whether the map is mature where the camera is: at least three keyframes of this session that are
+// more than a minute older show most of what the frame finds, from a similar direction and
+// distance; the frame finds at least half of the landmarks that should be visible (a place that is
+// mapped by day and by lamp shows one half at a time); and all parts of the image show landmarks.
+// A new keyframe would add nothing to such a map.
+bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
+                  FrameId first_of_session, const LocalTracking& tracking);
+
+// Follows from frame to frame what differs from the map's objects: detections that show no mapped
+// object, and objects of the reference keyframe where the depth image shows what is behind them.
+// Where the map is mature, only such a change that lasts is a reason for a keyframe, not the
+// mistakes of a detector, and only some times at one place: some things can never be mapped.
+class LastingChanges {
+ public:
+  // To be called once per frame. `tracking` has the final pose. Returns how many changes were seen
+  // in ten of the last frames (they may be missed twice in a row) and are still a reason.
+  int Follow(const Frame& frame, const Map& map, const TrackingContext& context,
+             const LocalTracking& tracking);
+  // A keyframe is made of the last frame because of them.
+  void NoteRequest();
+
+ private:
+  struct Change {
+    ObjectId gone;             // invalid: something unknown
+    std::string label;         // of the unknown thing
+    Eigen::AlignedBox2d box;   // of the unknown thing, px
+    Eigen::Vector3d position;  // m, world frame
+    int seen = 0;              // number of frames
+    int missed = 0;            // since it was seen last
+  };
+  struct Place {
+    Eigen::Vector3d position;  // m, world frame
+    int requests = 0;
+    double time = 0.0;  // s, of the last one
+  };
+  void Note(const Change& change);
+  Place* FindPlace(const Eigen::Vector3d& position);
+  bool IsReason(const Change& change);
+
+  std::vector<Change> changes_;
+  std::vector<Place> places_;
+  Eigen::Vector3d camera_ = Eigen::Vector3d::Zero();  // m, of the last frame
+  double time_ = 0.0;                                 // s, of the last frame
+};
 
 }  // namespace hullslam

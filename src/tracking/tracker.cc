@@ -340,6 +340,7 @@ std::optional<Tracker::Found> Tracker::FindWidely(const std::shared_ptr<const Fr
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                             const MapperStatus& mapper) {
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
+  const int lasting_changes = lasting_changes_.Follow(frame, map, Context(), tracking);
   KeyframeEvidence evidence =
       GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
   evidence.has_islands =
@@ -349,15 +350,22 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   if (relocalised_at_) {
     evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;
   }
-  if (!policy_.NeedsKeyframe(evidence)) {
+  if (!policy_.NeedsKeyframe(evidence) && lasting_changes == 0) {
     return false;
   }
   evidence.is_known_view =
       IsKnownView(map, sensor_, frame, first_frame_, tracking.reference, tracking.estimate);
+  evidence.is_well_mapped = IsWellMapped(map, sensor_, frame, first_frame_, tracking);
+  if (evidence.is_well_mapped && options_.keyframes_for_objects) {
+    evidence.unknown_objects = lasting_changes;
+    evidence.fruitless_requests = 0;
+  }
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }
-  if (policy_.NeedsKeyframeForObjects(evidence)) {
+  if (evidence.is_well_mapped) {
+    lasting_changes_.NoteRequest();
+  } else if (policy_.NeedsKeyframeForObjects(evidence)) {
     object_requests_.AddRequest();
   }
   if (policy_.NeedsKeyframeForJoin(evidence)) {

@@ -166,6 +166,7 @@ class Tracker {
   uint32_t kept_revision_ = UINT32_MAX;  // see KeepIdsSince
   RequestMemory object_requests_;
   JoinRequests join_requests_;
+  LastingChanges lasting_changes_;
   ObjectIndex object_index_;  // index of the map of the last frame
 };
 

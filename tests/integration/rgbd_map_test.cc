@@ -145,7 +145,25 @@ TEST_F(RgbdMap, AnInterruptedRunSavesItsMap) {
   EXPECT_EQ(ReadMap(map_).map.keyframes().size(), Summary()["map"]["keyframes"]);
 }
 
+TEST_F(RgbdMap, AKilledRunLeavesItsLastCheckpoint) {
+  const PlaneSequence slow(12, 0.5);
+  RunningProgram program("rgbd_tum", {slow.path(), "--realtime", "--output", output_, "--save-map",
+                                      map_, "--checkpoint", "0.05"});
+  while (!fs::exists(map_)) {
+    ASSERT_FALSE(program.ReadLine("frame ").empty());
+  }
+  program.Send(SIGKILL);
+  program.Wait();
+  const size_t keyframes = ReadMap(map_).map.keyframes().size();
+  EXPECT_GE(keyframes, 1U);
+  EXPECT_FALSE(fs::exists(output_ / "summary.json"));
+  ASSERT_EQ(Run({"--load-map", map_, "--save-map", map_}).exit_code, 0);
+  EXPECT_GE(ReadMap(map_).map.keyframes().size(), keyframes);
+}
+
 TEST_F(RgbdMap, BadUsageIsRefused) {
+  ExpectRefusal({"--checkpoint", "60"}, {"--checkpoint", "--save-map"});
+  ExpectRefusal({"--save-map", map_, "--checkpoint", "0"}, {"--checkpoint"});
   ExpectRefusal({"--localization"}, {"--localization", "--load-map"});
   ExpectRefusal({"--save-map", folder_.path() / "none" / "a.map"},
                 {"none/a.map", "there is no folder"});

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <limits>
@@ -513,6 +514,43 @@ TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
   EXPECT_TRUE(has_both()) << "every killed process left the same one of the two maps";
   Written(small);  // removes what the killed processes have left
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+}
+
+// ---- MapSaver
+
+TEST_F(MapFileTest, ASaverWritesTheMapWhenItIsTime) {
+  const auto map = std::make_shared<const Map>(SmallMap());
+  const std::string whole = Written(*map);
+  std::filesystem::remove(path_);
+  {
+    MapSaver saver(path_, MadeSettings(), 3600.0, [](const std::string&) {});
+    saver.Offer(map);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_)) << "it is not time yet";
+  {
+    MapSaver saver(path_, MadeSettings(), 0.0, [](const std::string&) {});
+    saver.Offer(nullptr);
+    saver.Offer(std::make_shared<const Map>());
+    while (!std::filesystem::exists(path_)) {
+      saver.Offer(map);
+    }
+  }
+  EXPECT_EQ(ReadFile(path_), whole);
+}
+
+TEST_F(MapFileTest, ASaverWithAFullDiskKeepsTheLastMapAndGoesOn) {
+  const auto map = std::make_shared<const Map>(SmallMap());
+  const std::string whole = Written(*map);
+  std::atomic<int> failures = 0;
+  MapSaver saver(path_, MadeSettings(), 0.0, [&](const std::string& reason) {
+    EXPECT_NE(reason.find("File too large"), std::string::npos) << reason;
+    ++failures;
+  });
+  const FileSizeLimit limit(1000);
+  while (failures < 2) {
+    saver.Offer(map);
+  }
+  EXPECT_EQ(ReadFile(path_), whole);
 }
 
 }  // namespace

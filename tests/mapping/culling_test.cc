@@ -611,6 +611,76 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
       << "keyframe 1 sees its landmarks at a finer level";
 }
 
+// Calls Enforce as mapping does, once for each of so many keyframes.
+int EnforceOften(Map& map, const Sensor& sensor, size_t most, int times) {
+  KeyframeBound bound;
+  const KeyframeId current(map.keyframes().NextId().value - 1);
+  int culled = 0;
+  for (int i = 0; i < times; ++i) {
+    culled += bound.Enforce(map, current, sensor, kMinObjectViews, most);
+    EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  }
+  return culled;
+}
+
+TEST(KeyframeBound, KeepsAsManyAsItMayAndTheNewest) {
+  const SyntheticWorld world;
+  SyntheticMap made = NearbyKeyframes(world, 50, 0.01);
+  EXPECT_EQ(EnforceOften(made.map, world.sensor(), 50, 1), 0);
+  EXPECT_EQ(EnforceOften(made.map, world.sensor(), 40, 1), 10) << "at once";
+  EXPECT_EQ(made.map.keyframes().size(), 40u);
+  EXPECT_EQ(EnforceOften(made.map, world.sensor(), 1, 3), 18);
+  EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(0))) << "the root";
+  for (uint32_t i = 29; i < 50; ++i) {
+    EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(i)));
+  }
+}
+
+TEST(KeyframeBound, AnObjectKeepsItsLastViews) {
+  const SyntheticWorld world;
+  SyntheticMap made = NearbyKeyframes(world, 50, 0.01);
+  const ObjectId object = made.map.AddObject();
+  for (uint32_t i = 3; i <= 10; ++i) {
+    ASSERT_TRUE(made.map.AddObservation(object, KeyframeId(i), 0));
+  }
+  EnforceOften(made.map, world.sensor(), 1, 5);
+  EXPECT_EQ(made.map.keyframes().size(), 25u);
+  EXPECT_EQ(made.map.objects().At(object).observations.size(), kMinObjectViews);
+}
+
+// Two places of six keyframes each, with landmarks that two or five of them see, and one keyframe
+// between them; then twenty young ones elsewhere.
+TEST(KeyframeBound, TheMostRedundantGoFirstAndThoseThatConnectPlacesStay) {
+  Map map;
+  std::vector<KeyframeId> ids;
+  for (uint32_t i = 0; i < 34; ++i) {
+    ids.push_back(map.AddKeyframe(MakeFrame(i, 300, 300), Rigid3()));
+  }
+  const KeyframeId middle = ids[7];
+  for (size_t i = 1; i < 7; ++i) {
+    Share(map, {ids[i], ids[i % 6 + 1]}, 60);
+  }
+  Share(map, {ids.begin() + 8, ids.begin() + 14}, 90);
+  Share(map, {ids[6], middle}, 70);
+  Share(map, {middle, ids[8]}, 70);
+  Share(map, {ids[0], ids[1]}, 70);
+  Share(map, {ids.begin() + 14, ids.end()}, 100);
+  for (const KeyframeId id : ids) {
+    UpdateCovisibility(map, id);
+    if (id.value > 0 && !map.keyframes().At(id).parent.IsValid()) {
+      SetParent(map, id, KeyframeId(0));
+    }
+  }
+  const Sensor sensor = SyntheticSensor();
+  EnforceOften(map, sensor, 31, 1);
+  for (uint32_t i = 1; i <= 8; ++i) {
+    EXPECT_TRUE(map.keyframes().Contains(KeyframeId(i))) << "others of its place are seen better";
+  }
+  EnforceOften(map, sensor, 1, 5);
+  EXPECT_TRUE(map.keyframes().Contains(middle));
+  EXPECT_LT(map.keyframes().size(), 31u);
+}
+
 TEST(FindRecentLandmarks, FindsLandmarksThatMayStillBeCulled) {
   Map map;
   for (int i = 0; i < 6; ++i) {

@@ -56,6 +56,7 @@ TEST(KeyframePolicy, AKnownViewNeedsNoKeyframe) {
   ExpectDecisions({
       {"a new view", With(weak), true},
       {"a known one", With([&](auto& e) { weak(e), e.is_known_view = true; }), false},
+      {"a mature map", With([&](auto& e) { weak(e), e.is_well_mapped = true; }), false},
       {"with an unknown object",
        With([&](auto& e) { weak(e), e.is_known_view = true, e.unknown_objects = 1; }), true},
   });

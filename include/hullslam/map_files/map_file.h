@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/sensor.h"
@@ -13,6 +17,9 @@
 #include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
+
+template <typename Task>
+class LatestWorker;
 
 // The settings with which the frames of a map were made. Frames that were made with other settings
 // cannot be found in the map.
@@ -47,6 +54,27 @@ class ReadingCancelled : public std::runtime_error {
 // bytes, also after it was read from a file. Throws InputError with `path` and the reason if the
 // map has no keyframe or the file cannot be written.
 void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettings& settings);
+
+// Saves the map of a run from time to time, in a thread of its own, so that little is lost if the
+// process is killed or the computer fails. The file is always a whole map; if a map cannot be
+// written (disk full), the last one stays. All islands are written.
+class MapSaver {
+ public:
+  // Every `seconds`, WriteMap(path, map, settings). `on_failure` is called in the thread of the
+  // saver, with the reason, when a map could not be written.
+  MapSaver(const std::filesystem::path& path, const MapSettings& settings, double seconds,
+           std::function<void(const std::string& reason)> on_failure);
+  // Waits until a map that is being written is complete.
+  ~MapSaver();
+  // To be called with System::map() after each frame; takes next to no time. Saves the map if it is
+  // time and the former one was written. A null map or one without keyframes is never saved.
+  void Offer(const std::shared_ptr<const Map>& map);
+
+ private:
+  const double seconds_;
+  std::chrono::steady_clock::time_point saved_;
+  std::unique_ptr<LatestWorker<std::shared_ptr<const Map>>> worker_;
+};
 
 // Reads a file of WriteMap(). The map has no index of its words. It has the same values, ids and
 // free ids, so new entities get the same ids as if the run had gone on. Two things are not kept:

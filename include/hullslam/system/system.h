@@ -76,8 +76,7 @@ struct LeftIsland {
 //   Trajectory trajectory = system.trajectory();
 //
 // Its functions are called by one thread at a time, with two exceptions: Build() may be called by
-// another thread meanwhile, and map() by any thread if the pipeline is threaded. docs/library.md
-// has more about threads.
+// another thread meanwhile, and map() by any thread. docs/library.md has more about threads.
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does and for a map whose vocabulary has another
