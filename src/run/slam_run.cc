@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hullslam/datasets/input_checks.h"
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
@@ -191,6 +192,9 @@ RunResult TrackAll(const SlamRun& run) {
   }
   progress.Clear();
   system.SetFrameCallback({});
+  if (run.arguments.live_poses) {
+    run.output.Write({"live_poses.txt", FormatLivePoses(system.frames())});
+  }
   run.live.BeginFinishing();
   FinishMap(run.arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
@@ -210,6 +214,7 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations,
           arguments.vocabulary,
           arguments.load_map,
+          arguments.odometry,
           arguments.groundtruth == "none" ? std::filesystem::path() : arguments.groundtruth};
 }
 
