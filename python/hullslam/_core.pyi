@@ -443,6 +443,42 @@ class TrackResult:
     @property
     def events(self) -> list[MapEvent]:
         """What has happened since the frame before: list of MapEvent."""
+    def covariance(self) -> _Doubles | None:
+        """(6, 6) of the error of the pose (rotation in rad, translation), in
+        the axes of the camera, with the drift of the map; or None.
+        """
+    @property
+    def quality(self) -> float:
+        """0 to 1: the least probability that the pose places a point in a corner of the image
+        at most 1 px from where the landmarks tell.
+        """
+    @property
+    def prior(self) -> Literal["none", "fused", "dropped", "alone"]:
+        """How `motion` was used: 'none', 'fused' with the landmarks, 'dropped' because they
+        contradict it, or 'alone' where the image shows too few of them.
+        """
+    @property
+    def odom_from_cam(self) -> _Doubles | None:
+        """(4, 4): the pose in the world of the odometry, which never jumps but drifts. It goes
+        on when the camera is lost. None before the first pose.
+        """
+    @property
+    def map_from_odom(self) -> _Doubles | None:
+        """(4, 4): world_from_cam = map_from_odom @ odom_from_cam at tracked frames; or None."""
+    @property
+    def corrected_at(self) -> int | None:
+        """The number of the last frame at which map_from_odom may have jumped; or None."""
+    @property
+    def odometry_step(self) -> Literal["begun", "measured", "prior", "predicted", "stopped"] | None:
+        """Where the last step of the odometry is from: 'begun', 'measured', 'prior',
+        'predicted' with the last velocity, or 'stopped'; or None.
+        """
+    @property
+    def linear_velocity(self) -> _Doubles | None:
+        """(3,) m/s of the camera since the frame before, in its axes; or None."""
+    @property
+    def angular_velocity(self) -> _Doubles | None:
+        """(3,) rad/s, likewise; or None."""
     @property
     def objects(self) -> list[SeenObject]:
         """The objects that masks show in this frame: list of SeenObject."""
@@ -474,7 +510,8 @@ class System:
         """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
               right: _Image | None = None, masks_right: Masks | None = None,
-              timestamp: float) -> TrackResult:
+              timestamp: float, motion: _Doubles | None = None,
+              motion_covariance: _Doubles | None = None) -> TrackResult:
         """Finds the pose of the camera in the next frame: TrackResult.
 
         image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV
@@ -487,6 +524,10 @@ class System:
         right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.
         masks_right: Masks of the objects in the right image, or None.
         timestamp: s, larger than in the frame before.
+        motion: (4, 4) cam_from_last_cam since the frame before, m, by wheels or an inertial
+        sensor, or None. Not in the mode 'mono'.
+        motion_covariance: (6, 6) of its error (rotation in rad, translation in m, in the
+        axes of the camera now): positive definite.
         Raises InputError for anything else, also for pairs that are swapped, the same or not
         rectified, and for float32 depth that cannot be metres; a refused frame changes
         nothing. Warns of input that can be used but hardly is what was meant.

@@ -332,6 +332,12 @@ class _objects:
     @validity.setter
     def validity(self, values: _Values) -> None: ...
 
+class _odometry:
+    sigma_turn: float
+    """standard deviation of a step of --odometry, as a share of its rotation (a number from 0 to 1; default 0.02)"""
+    sigma_way: float
+    """standard deviation of a step of --odometry, as a share of its length (a number from 0 to 1; default 0.02)"""
+
 class _run:
     max_lost_at_end: float
     """the run fails (exit code 1) if no frame of a longer time at its end has a pose, s (a number >= 0; default 1)"""
@@ -426,6 +432,10 @@ class Settings(_core.SettingsTable):
     def objects(self) -> _objects: ...
     @objects.setter
     def objects(self, values: _Values) -> None: ...
+    @property
+    def odometry(self) -> _odometry: ...
+    @odometry.setter
+    def odometry(self, values: _Values) -> None: ...
     @property
     def run(self) -> _run: ...
     @run.setter

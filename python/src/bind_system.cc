@@ -90,9 +90,27 @@ std::vector<InstanceMask> MasksOf(const MaskList* masks, const cv::Mat& image) {
   return masks->masks;
 }
 
+std::optional<MotionPrior> MotionOf(const py::object& motion, const py::object& covariance) {
+  if (motion.is_none() != covariance.is_none()) {
+    throw InputError("motion and motion_covariance are given together or not at all");
+  }
+  if (motion.is_none()) {
+    return std::nullopt;
+  }
+  MotionPrior prior{.cam_from_last_cam = ToPose(motion, "motion")};
+  const py::array_t<double> numbers = ToNumbers(covariance, "motion_covariance", 2);
+  if (numbers.shape(0) != 6 || numbers.shape(1) != 6) {
+    throw InputError("motion_covariance has not the shape (6, 6)");
+  }
+  for (py::ssize_t i = 0; i < 36; ++i) {
+    prior.covariance(i / 6, i % 6) = numbers.at(i / 6, i % 6);
+  }
+  return prior;
+}
+
 FrameReport Track(LiveSystem& system, const py::object& image, const py::object& depth,
                   const MaskList* masks, const py::object& right, const MaskList* masks_right,
-                  double timestamp) {
+                  double timestamp, const py::object& motion, const py::object& motion_covariance) {
   const PinholeCamera& camera = system.options().camera;
   const cv::Size size(camera.width, camera.height);
   const PixelSpan pixels = ImageOf(image, "the image", size);
@@ -100,10 +118,11 @@ FrameReport Track(LiveSystem& system, const py::object& image, const py::object&
   const PixelSpan rights = right.is_none() ? PixelSpan() : ImageOf(right, "the right image", size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
   std::vector<InstanceMask> in_right = MasksOf(masks_right, pixels.image);
+  const std::optional<MotionPrior> prior = MotionOf(motion, motion_covariance);
   std::vector<std::string> warnings;
   FrameReport report = WithoutGil([&] {
     FrameReport of_frame = system.Track(timestamp, pixels.image, {depths.image, rights.image},
-                                        std::move(instances), std::move(in_right));
+                                        std::move(instances), std::move(in_right), prior);
     warnings = system.TakeWarnings();
     return of_frame;
   });
@@ -242,6 +261,7 @@ void BindSystem(py::module_& module) {
       .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
            py::arg("masks") = py::none(), py::kw_only(), py::arg("right") = py::none(),
            py::arg("masks_right") = py::none(), py::arg("timestamp"),
+           py::arg("motion") = py::none(), py::arg("motion_covariance") = py::none(),
            "Finds the pose of the camera in the next frame: TrackResult.\n\n"
            "image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV\n"
            "reads images (red first with the setting Camera.RGB). It is copied only if its rows\n"
@@ -253,6 +273,10 @@ void BindSystem(py::module_& module) {
            "right: the right image, as `image`, rectified with it. Only in the mode 'stereo'.\n"
            "masks_right: Masks of the objects in the right image, or None.\n"
            "timestamp: s, larger than in the frame before.\n"
+           "motion: (4, 4) cam_from_last_cam since the frame before, m, by wheels or an inertial\n"
+           "sensor, or None. Not in the mode 'mono'.\n"
+           "motion_covariance: (6, 6) of its error (rotation in rad, translation in m, in the\n"
+           "axes of the camera now): positive definite.\n"
            "Raises InputError for anything else, also for pairs that are swapped, the same or not\n"
            "rectified, and for float32 depth that cannot be metres; a refused frame changes\n"
            "nothing. Warns of input that can be used but hardly is what was meant.")

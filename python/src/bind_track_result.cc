@@ -37,6 +37,20 @@ py::object IfTracked(const FrameReport& report, const Rigid3& pose) {
                                                          : py::object(py::none());
 }
 
+// What `get` gives of the odometry of the frame; None before the first pose.
+template <typename Get>
+py::object OfOdometry(const FrameReport& report, const Get& get) {
+  const std::optional<Odometry>& odometry = report.tracked.odometry;
+  return odometry ? py::object(get(*odometry)) : py::object(py::none());
+}
+
+py::object CovarianceOf(const FrameReport& report) {
+  if (!report.tracked.covariance) {
+    return py::none();
+  }
+  return py::array_t<double>({6, 6}, report.tracked.covariance->data());  // symmetric
+}
+
 py::array_t<MatchRow> MatchesOf(const FrameReport& report) {
   std::vector<MatchRow> rows;
   for (size_t i = 0; i < report.landmarks.size(); ++i) {
@@ -135,6 +149,56 @@ void BindTrackResult(py::module_& module) {
           "(2,), undistorted.")
       .def_readonly("events", &FrameReport::events,
                     "What has happened since the frame before: list of MapEvent.")
+      .def_property_readonly("covariance", &CovarianceOf,
+                             "(6, 6) of the error of the pose (rotation in rad, translation), in\n"
+                             "the axes of the camera, with the drift of the map; or None.")
+      .def_property_readonly(
+          "quality", [](const FrameReport& r) { return r.tracked.quality; },
+          "0 to 1: the least probability that the pose places a point in a corner of the image\n"
+          "at most 1 px from where the landmarks tell.")
+      .def_property_readonly(
+          "prior", [](const FrameReport& r) { return ToString(r.tracked.prior); },
+          "How `motion` was used: 'none', 'fused' with the landmarks, 'dropped' because they\n"
+          "contradict it, or 'alone' where the image shows too few of them.")
+      .def_property_readonly(
+          "odom_from_cam",
+          [](const FrameReport& r) {
+            return OfOdometry(r, [](const Odometry& o) { return ToArray(o.odom_from_cam); });
+          },
+          "(4, 4): the pose in the world of the odometry, which never jumps but drifts. It goes\n"
+          "on when the camera is lost. None before the first pose.")
+      .def_property_readonly(
+          "map_from_odom",
+          [](const FrameReport& r) {
+            return OfOdometry(r, [](const Odometry& o) { return ToArray(o.map_from_odom); });
+          },
+          "(4, 4): world_from_cam = map_from_odom @ odom_from_cam at tracked frames; or None.")
+      .def_property_readonly(
+          "corrected_at",
+          [](const FrameReport& r) {
+            return OfOdometry(r,
+                              [](const Odometry& o) { return py::int_(ToNumber(o.corrected_at)); });
+          },
+          "The number of the last frame at which map_from_odom may have jumped; or None.")
+      .def_property_readonly(
+          "odometry_step",
+          [](const FrameReport& r) {
+            return OfOdometry(r, [](const Odometry& o) { return py::cast(ToString(o.step)); });
+          },
+          "Where the last step of the odometry is from: 'begun', 'measured', 'prior',\n"
+          "'predicted' with the last velocity, or 'stopped'; or None.")
+      .def_property_readonly(
+          "linear_velocity",
+          [](const FrameReport& r) {
+            return OfOdometry(r, [](const Odometry& o) { return ToArray(o.linear_velocity); });
+          },
+          "(3,) m/s of the camera since the frame before, in its axes; or None.")
+      .def_property_readonly(
+          "angular_velocity",
+          [](const FrameReport& r) {
+            return OfOdometry(r, [](const Odometry& o) { return ToArray(o.angular_velocity); });
+          },
+          "(3,) rad/s, likewise; or None.")
       .def_property_readonly("objects", &SeenObjectsOf,
                              "The objects that masks show in this frame: list of SeenObject.")
       .def("__repr__", [](const FrameReport& r) {

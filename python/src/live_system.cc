@@ -114,7 +114,8 @@ void CheckSecond(SensorKind sensor, const SecondImage& second) {
 
 FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const SecondImage& second,
                               std::vector<InstanceMask> masks,
-                              std::vector<InstanceMask> right_masks) {
+                              std::vector<InstanceMask> right_masks,
+                              std::optional<MotionPrior> motion) {
   const std::lock_guard lock(mutex_);
   System& system = Open();
   if (is_finished_) {
@@ -131,9 +132,15 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const Seco
                      " s after that of the last frame, expected seconds, not nanoseconds");
   }
   CheckSecond(options_.sensor, second);
+  if (motion) {
+    if (!last_stamp_) {
+      throw InputError("motion is given for the first frame, expected none");
+    }
+    motion->last_timestamp = *last_stamp_;
+  }
   const cv::Mat unmasked = late_masks_ != nullptr && masks.empty() ? image.clone() : cv::Mat();
   system.Track(timestamp, image, second.right.empty() ? second.depth : second.right,
-               std::move(masks), std::move(right_masks));
+               std::move(masks), std::move(right_masks), motion);
   last_stamp_ = timestamp;
   if (late_masks_ != nullptr) {
     late_masks_->AfterFrame(report_.tracked, unmasked);

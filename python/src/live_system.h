@@ -34,9 +34,11 @@ class LiveSystem {
   LiveSystem& operator=(const LiveSystem&) = delete;
 
   // Throws InputError after Finish() and for a time stamp that is not after the last one, and
-  // otherwise as System::Track does. A refused frame changes nothing.
+  // otherwise as System::Track does. A refused frame changes nothing. `motion` is that from the
+  // last frame, whose stamp is set here.
   FrameReport Track(double timestamp, const cv::Mat& image, const SecondImage& second,
-                    std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks);
+                    std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks,
+                    std::optional<MotionPrior> motion);
   // The warnings of the system that this function has not returned yet.
   std::vector<std::string> TakeWarnings();
   // `is_over` is asked from time to time whether to end early, see System::Finish.

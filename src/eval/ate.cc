@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -185,6 +186,52 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   }
   report.errors = SummarizeErrors(std::move(errors));
   return report;
+}
+
+NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
+                        std::span<const Eigen::Matrix<double, 6, 6>> covariances) {
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  constexpr double kMaxGap = 0.1;  // s
+  constexpr int kIterations = 10;
+  struct Pair {
+    Rigid3 cam_from_truth;
+    Rigid3 cam_from_world;
+    Eigen::LLT<Matrix6d> covariance;
+  };
+  std::vector<Pair> pairs;
+  for (size_t i = 0; i < estimate.size(); ++i) {
+    const auto truth = InterpolatePose(reference, estimate[i].timestamp, kMaxGap);
+    const Eigen::LLT<Matrix6d> factors(covariances[i]);
+    if (truth && factors.info() == Eigen::Success) {
+      pairs.push_back({Inverse(*truth), Inverse(estimate[i].world_from_cam), factors});
+    }
+  }
+  NeesResult result{.poses = pairs.size(), .ratio = {}};
+  if (pairs.empty()) {
+    return result;
+  }
+  // Gauss-Newton on a step of the alignment, which moves d by the transform of InAxesOf.
+  Rigid3 world_from_truth = Inverse(pairs.front().cam_from_world) * pairs.front().cam_from_truth;
+  const auto error = [&](const Pair& pair) {
+    return Difference(pair.cam_from_world * world_from_truth, pair.cam_from_truth);
+  };
+  for (int i = 0; i < kIterations; ++i) {
+    Matrix6d hessian = Matrix6d::Zero();
+    Vector6d gradient = Vector6d::Zero();
+    for (const Pair& pair : pairs) {
+      const Matrix6d by_step = Adjoint(pair.cam_from_world);
+      hessian += by_step.transpose() * pair.covariance.solve(by_step);
+      gradient += by_step.transpose() * pair.covariance.solve(error(pair));
+    }
+    world_from_truth = Retract(world_from_truth, hessian.ldlt().solve(gradient));
+  }
+  std::vector<double> ratios;
+  for (const Pair& pair : pairs) {
+    ratios.push_back(error(pair).dot(pair.covariance.solve(error(pair))) / 6.0);
+  }
+  result.ratio = SummarizeErrors(std::move(ratios));
+  return result;
 }
 
 std::string DescribeMissingPairs(const AteResult& report) {

@@ -92,7 +92,8 @@ std::string DescribeSwappedRotations(const Trajectory& reference, const Trajecto
 }
 
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
-                                    const AteOptions& options) {
+                                    const AteOptions& options,
+                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances) {
   TrajectoryErrors errors{.options = options, .ate = EvaluateAte(reference, estimate, options)};
   if (!errors.ate.ok()) {
     return errors;
@@ -101,6 +102,9 @@ TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajector
                               .pairing = options.pairing,
                               .max_difference = options.max_difference};
   errors.rpe = EvaluateRpe(reference, estimate, motions);
+  if (!covariances.empty()) {
+    errors.nees = EvaluateNees(reference, estimate, covariances);
+  }
   for (const std::string& warning :
        {DescribeMissingPairs(errors.ate),
         DescribeSwappedRotations(reference, estimate, errors.rpe, motions)}) {

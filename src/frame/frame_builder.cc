@@ -135,6 +135,7 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
   using Clock = std::chrono::steady_clock;
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
+  built.frame->motion = image.motion;
   built.frame->depth_delay = image.depth_delay;
   DetectionInput input;
   input.keypoints = AddFeatures(image, runner, built.frame->features);

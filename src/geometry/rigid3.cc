@@ -75,6 +75,13 @@ Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta)
   return Rigid3(ExpSo3(delta.head<3>()), delta.tail<3>()) * b_from_a;
 }
 
+Eigen::Matrix<double, 6, 6> Adjoint(const Rigid3& b_from_a) {
+  const Eigen::Matrix3d rotation = b_from_a.rotation.toRotationMatrix();
+  Eigen::Matrix<double, 6, 6> adjoint;
+  adjoint << rotation, Eigen::Matrix3d::Zero(), Skew(b_from_a.translation) * rotation, rotation;
+  return adjoint;
+}
+
 double AngularDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return LogSo3(a.conjugate() * b).norm();
 }

@@ -369,7 +369,7 @@ std::string DescribeErrors(const char* name, const ErrorStatistics& errors, cons
 std::string TrajectoryErrorsJson(const TrajectoryErrors& errors) {
   const AteResult& ate = errors.ate;
   const AteOptions& options = errors.options;
-  const Json json = {
+  Json json = {
       {"ate_m", ToJson(ate.errors)},
       {"alignment", ToString(options.alignment)},
       {"scale", ate.reference_from_estimate.scale},
@@ -382,6 +382,11 @@ std::string TrajectoryErrorsJson(const TrajectoryErrors& errors) {
       {"paired_span_s", ate.paired_span},
       {"rpe", ToJson(errors.rpe)},
       {"scale_drift", OrNull(ate.scale_drift)}};
+  if (errors.nees) {
+    json["nees_over_6"] = {{"mean", errors.nees->ratio.mean},
+                           {"median", errors.nees->ratio.median},
+                           {"poses", errors.nees->poses}};
+  }
   return json.dump(2);
 }
 
@@ -426,6 +431,11 @@ std::string TrajectoryErrorsText(const TrajectoryErrors& errors) {
   if (ate.scale_drift) {
     text += fmt::format("{:<12} {:.2f} % from the first to the last tenth of the pairs\n",
                         "scale drift", 100.0 * *ate.scale_drift);
+  }
+  if (errors.nees) {
+    text += fmt::format(
+        "{:<12} {:.2f} mean (1 if the covariances are right), {:.2f} median, {} poses\n",
+        "NEES / 6", errors.nees->ratio.mean, errors.nees->ratio.median, errors.nees->poses);
   }
   return text;
 }

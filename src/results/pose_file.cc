@@ -24,10 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kPoseColumns = 8;     // stamp, position, rotation
-constexpr size_t kMatrixColumns = 12;  // or 16, with the row 0 0 0 1
-constexpr size_t kEurocColumns = 17;   // also velocity and biases
-constexpr size_t kTartanColumns = 7;   // position, rotation
+constexpr size_t kPoseColumns = 8;      // stamp, position, rotation
+constexpr size_t kMatrixColumns = 12;   // or 16, with the row 0 0 0 1
+constexpr size_t kEurocColumns = 17;    // also velocity and biases
+constexpr size_t kTartanColumns = 7;    // position, rotation
+constexpr int kCovarianceColumns = 21;  // c11 c12 ... c66, the upper triangle by rows
 
 struct Layout {
   size_t columns = kPoseColumns;  // of each row
@@ -35,6 +36,7 @@ struct Layout {
   bool is_w_first = false;
   bool is_matrix = false;  // without stamps, but with the number of the frame if `first` is 1
   bool is_tartan = false;  // of TartanAir, without stamps
+  std::optional<size_t> covariance = std::nullopt;  // the first of its 21 columns
 
   bool HasStamps() const { return !is_matrix && !is_tartan; }
 };
@@ -83,7 +85,13 @@ Layout LayoutOf(const TextRow& row) {
   const auto before = static_cast<size_t>(first - names.begin());
   if (names.size() == columns && before >= 4 &&
       std::count_if(first, names.end(), is_rotation) == 4) {
-    return {columns, before - 4, first->ends_with('w'), false};
+    Layout layout{columns, before - 4, first->ends_with('w'), false};
+    const auto covariance = std::ranges::find(names, "c11");
+    if (names.end() - covariance >= kCovarianceColumns &&
+        covariance[kCovarianceColumns - 1] == "c66") {
+      layout.covariance = static_cast<size_t>(covariance - names.begin());
+    }
+    return layout;
   }
   if (columns == kMatrixColumns || columns == 16) {
     return {.columns = columns, .is_matrix = true};
@@ -197,6 +205,16 @@ bool IsSame(const Rigid3& a, const Rigid3& b) {
   return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
+Eigen::Matrix<double, 6, 6> ReadCovariance(const TextRow& row, size_t column) {
+  Eigen::Matrix<double, 6, 6> covariance;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    for (Eigen::Index j = i; j < 6; ++j) {
+      covariance(i, j) = covariance(j, i) = row.Number(column++, "an element of the covariance");
+    }
+  }
+  return covariance;
+}
+
 class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {}
@@ -235,7 +253,14 @@ class Reader {
         file_.has_stamps = layout_->HasStamps();
         file_.has_numbers = layout_->is_matrix && layout_->first > 0;
       }
-      AddPose(row, {StampOf(row), ReadPose(row, *layout_)});
+      const StampedPose pose{StampOf(row), ReadPose(row, *layout_)};
+      if (layout_->covariance) {
+        const Eigen::Matrix<double, 6, 6> covariance = ReadCovariance(row, *layout_->covariance);
+        AddPose(row, pose);
+        file_.covariances.resize(file_.poses.size(), covariance);
+      } else {
+        AddPose(row, pose);
+      }
     } catch (const InputError& error) {
       fault_ = malformed_ == 0 ? error.what() : fault_;
       ++malformed_;

@@ -18,6 +18,9 @@ struct PoseFile {
   bool has_stamps = true;    // false: the stamps are the indices of the rows
   bool has_numbers = false;  // without stamps: these are numbers of frames, and some may be missing
   std::vector<std::string> notes;  // what was converted or skipped
+  // Those of live_poses.txt, one for each pose; empty if the file has none. 0 for the poses that
+  // the map began with.
+  std::vector<Eigen::Matrix<double, 6, 6>> covariances = {};
 };
 
 // Reads a trajectory in any of these forms, which the first line with data or a line with the names

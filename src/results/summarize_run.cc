@@ -225,6 +225,20 @@ RunSummary SummarizeRun(const RunResult& result, const System& system,
   return summary;
 }
 
+std::string DescribePriors(std::span<const TrackedFrame> frames) {
+  std::map<PriorUse, size_t> uses;
+  for (const TrackedFrame& frame : frames) {
+    ++uses[frame.prior];
+  }
+  if (uses[PriorUse::kNone] == frames.size()) {
+    return {};
+  }
+  return fmt::format("odometry: used with the landmarks of {}, alone in {}, contradicted by {}\n",
+                     Counted(uses[PriorUse::kFused], "frame"),
+                     Counted(uses[PriorUse::kAlone], "frame"),
+                     Counted(uses[PriorUse::kDropped], "frame"));
+}
+
 ProvenanceSummary SummarizeSettings(const LoadedSettings& settings, const RunResult& result) {
   ProvenanceSummary provenance;
   provenance.settings_hash = HashSettings(settings.options);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ RunSummary SummarizeRun(const RunResult& result, const System& system,
 // frames were lost (RunOptions). Empty if it did not fail.
 std::string DescribeRunEnd(const RunResult& result, const System& system, size_t frames,
                            const RunSummary& summary);
+// How many frames used motion priors, for people; empty if none did.
+std::string DescribePriors(std::span<const TrackedFrame> frames);
 // The settings of a run, and how it ended.
 ProvenanceSummary SummarizeSettings(const LoadedSettings& settings, const RunResult& result);
 

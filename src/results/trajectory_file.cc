@@ -37,18 +37,24 @@ double Rounded(double value) {
   return std::abs(value) <= kHalf ? 0.0 : value;
 }
 
+// The seven numbers of a pose in TUM's order.
+void AppendPose(const Rigid3& pose, std::string& text) {
+  const Eigen::Vector3d& t = pose.translation;
+  Eigen::Vector4d q = pose.rotation.normalized().coeffs();
+  Check(t.allFinite() && q.allFinite(), "a number of a pose is not finite");
+  if (q.w() < 0.0) {
+    q = -q;
+  }
+  fmt::format_to(std::back_inserter(text), " {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}",
+                 Rounded(t.x()), Rounded(t.y()), Rounded(t.z()), Rounded(q.x()), Rounded(q.y()),
+                 Rounded(q.z()), Rounded(q.w()));
+}
+
 void AppendPoses(const Trajectory& trajectory, std::string& text) {
   for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d& t = pose.world_from_cam.translation;
-    Eigen::Vector4d q = pose.world_from_cam.rotation.normalized().coeffs();
-    Check(t.allFinite() && q.allFinite(), "a number of a pose is not finite");
-    if (q.w() < 0.0) {
-      q = -q;
-    }
-    fmt::format_to(std::back_inserter(text),
-                   "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp,
-                   Rounded(t.x()), Rounded(t.y()), Rounded(t.z()), Rounded(q.x()), Rounded(q.y()),
-                   Rounded(q.z()), Rounded(q.w()));
+    fmt::format_to(std::back_inserter(text), "{:.6f}", pose.timestamp);
+    AppendPose(pose.world_from_cam, text);
+    text += '\n';
   }
 }
 
@@ -85,6 +91,42 @@ Trajectory ReadKeyframes(const std::filesystem::path& path) {
 std::string FormatTrajectory(const Trajectory& trajectory) {
   const TrajectoryPart part{.title = {}, .poses = trajectory};
   return FormatTrajectory({&part, 1});
+}
+
+std::string FormatLivePoses(std::span<const TrackedFrame> frames) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw";
+  for (int row = 1; row <= 6; ++row) {
+    for (int column = row; column <= 6; ++column) {
+      text += fmt::format(" c{}{}", row, column);
+    }
+  }
+  text +=
+      " odom_tx odom_ty odom_tz odom_qx odom_qy odom_qz odom_qw vx vy vz wx wy wz step "
+      "corrected_at "
+      "pose_quality prior\n";
+  for (const TrackedFrame& frame : frames) {
+    if (frame.state != TrackingState::kTracked || !frame.odometry) {
+      continue;
+    }
+    const Odometry& odometry = *frame.odometry;
+    fmt::format_to(std::back_inserter(text), "{:.6f}", frame.timestamp);
+    AppendPose(frame.world_from_cam(), text);
+    const Eigen::Matrix<double, 6, 6> covariance =
+        frame.covariance.value_or(Eigen::Matrix<double, 6, 6>::Zero());
+    for (Eigen::Index row = 0; row < 6; ++row) {
+      for (Eigen::Index column = row; column < 6; ++column) {
+        fmt::format_to(std::back_inserter(text), " {:.6g}", covariance(row, column));
+      }
+    }
+    AppendPose(odometry.odom_from_cam, text);
+    const Eigen::Vector3d& v = odometry.linear_velocity;
+    const Eigen::Vector3d& w = odometry.angular_velocity;
+    fmt::format_to(std::back_inserter(text),
+                   " {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {} {} {:.3f} {}\n", v.x(), v.y(),
+                   v.z(), w.x(), w.y(), w.z(), ToString(odometry.step), odometry.corrected_at.value,
+                   frame.quality, ToString(frame.prior));
+  }
+  return text;
 }
 
 void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {

@@ -110,7 +110,7 @@ int FinishSlam(const SlamRun& run, const RunResult& result) {
                             .trajectory = &content.trajectory,
                             .objects = &content.objects});
   if (!arguments.quiet) {
-    Print("{}results are in {}\n",
+    Print("{}{}results are in {}\n", DescribePriors(run.system.frames()),
           DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),
           arguments.output.string());
   }

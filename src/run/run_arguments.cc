@@ -119,6 +119,11 @@ void AddCommonArguments(CLI::App& app, RunArguments& arguments) {
                "also write the parts of the map that could not be joined to the rest after the "
                "camera was lost, each with its own trajectory (trajectory_island2.txt and so on) "
                "and, with --save-map, its own map file");
+  app.add_option("--odometry", arguments.odometry,
+                 "FILE in TUM's form: poses of the camera by wheels or an inertial sensor, which "
+                 "predict poses and bridge images that show too little (odometry.sigma_way)");
+  app.add_flag("--live-poses", arguments.live_poses,
+               "also write live_poses.txt: poses when they were tracked, covariances, odometry");
   AddMcapOption(app, arguments.mcap);
   app.add_flag("--threaded", arguments.threaded,
                "run mapping in its own thread: faster, but results differ a little between runs");

@@ -36,6 +36,8 @@ struct RunArguments {
   std::filesystem::path mask_all_right = {};
   std::filesystem::path segment;  // network that makes masks; empty: none
   size_t segment_every = 1;
+  std::filesystem::path odometry;  // poses of the camera by wheels or the like; empty: none
+  bool live_poses = false;
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";
   bool overwrite = false;

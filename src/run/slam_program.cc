@@ -89,6 +89,7 @@ int RunOnDataset(const Dataset& dataset, RunArguments arguments, DatasetChoices 
       (!arguments.groundtruth.empty() && !dataset.reads_groundtruth)) {
     UseGivenGroundtruth(arguments.groundtruth, dataset.expected_stamps, opened.sequence);
   }
+  ReadOdometry(arguments.odometry, arguments.sensor, opened.sequence);
   PrintWarnings(opened.sequence.warnings);
   return RunSlam(arguments, std::move(opened.settings), opened.sequence, opened.notes);
 }

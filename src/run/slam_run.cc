@@ -13,6 +13,7 @@
 
 #include "hullslam/datasets/input_checks.h"
 #include "hullslam/map_files/map_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_all.h"
@@ -197,6 +198,9 @@ RunResult TrackAll(const SlamRun& run) {
   }
   progress.Clear();
   system.SetFrameCallback({});
+  if (run.arguments.live_poses) {
+    run.output.Write({"live_poses.txt", FormatLivePoses(system.frames())});
+  }
   run.live.BeginFinishing();
   FinishMap(run.arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
@@ -216,6 +220,7 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations,
           arguments.vocabulary,
           arguments.load_map,
+          arguments.odometry,
           arguments.groundtruth == "none" ? std::filesystem::path() : arguments.groundtruth};
 }
 

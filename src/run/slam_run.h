@@ -18,14 +18,12 @@
 namespace hullslam {
 
 // Runs RGB-D or monocular SLAM (SystemOptions::sensor) on a sequence. Writes trajectory.txt,
-// keyframes.txt, map.ply and summary.json to the output folder, with masks also the files of the
-// objects, and groundtruth.txt if the ground truth of the sequence had to be converted; prints the
+// keyframes.txt, map.ply, summary.json and more (docs/outputs.md) to the output folder; prints the
 // results. Returns the program's exit code. Throws InputError for bad input, before the first frame
 // if possible. `notes` are lines about the input, which are printed before the first frame.
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes);
 
-// A run: what it reads, and what it makes.
 struct SlamRun {
   const RunArguments& arguments;
   const LoadedSettings& settings;
@@ -38,9 +36,8 @@ struct SlamRun {
   size_t earlier_sessions = 0;  // of the map that the run began with
 };
 
-// Writes the results of a run whose frames have all been tracked and whose map is finished to its
-// output folder, and its map, recording and report where they are asked for. Prints the results,
-// and why the run or a file failed. Returns the exit code.
+// Writes the results of a finished run to its output folder, and its map, recording and report
+// where they are asked for. Prints the results, and why the run failed. Returns the exit code.
 int FinishSlam(const SlamRun& run, const RunResult& result);
 
 }  // namespace hullslam

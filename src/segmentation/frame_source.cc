@@ -53,6 +53,12 @@ std::optional<LoadedFrame> FrameSource::Next() {
 }
 
 TrackedFrame FrameSource::Track(LoadedFrame& loaded) {
+  const std::span<const TrackedFrame> tracked = system_.frames();
+  if (!tracked.empty()) {
+    Frame& next = *loaded.frame->frame;
+    next.motion = PriorBetween(sequence_, tracked.back().timestamp, next.timestamp,
+                               system_.options().odometry);
+  }
   const TrackedFrame frame = system_.Track(std::move(*loaded.frame));
   if (late_masks_ != nullptr && !loaded.has_unknown_masks) {
     late_masks_->AfterFrame(frame, loaded.colour);

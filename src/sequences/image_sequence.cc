@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "camera/fit_depth.h"
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 #include "images/image_file.h"
 #include "results/pose_file.h"
@@ -188,6 +189,41 @@ std::vector<double> StampsOf(std::span<const FramePaths> frames) {
     stamps.push_back(frame.timestamp);
   }
   return stamps;
+}
+
+void ReadOdometry(const std::filesystem::path& path, SensorKind sensor, ImageSequence& sequence) {
+  if (path.empty()) {
+    return;
+  }
+  if (sensor == SensorKind::kMonocular) {
+    throw InputError(
+        path.string() +
+        ": the odometry is in metres, expected a camera with depth or a stereo camera, "
+        "because the map of a monocular run is not");
+  }
+  sequence.odometry = AsLoaded(sequence, ReadTrajectory(path));
+}
+
+std::optional<MotionPrior> PriorBetween(const ImageSequence& sequence, double from, double to,
+                                        const OdometryOptions& options) {
+  if (!sequence.odometry) {
+    return std::nullopt;
+  }
+  constexpr double kMaxGap = 0.5;  // s
+  constexpr double kLeast = 1e-4;  // rad and m
+  const std::optional<Rigid3> world_from_last = InterpolatePose(*sequence.odometry, from, kMaxGap);
+  const std::optional<Rigid3> world_from_cam = InterpolatePose(*sequence.odometry, to, kMaxGap);
+  if (!world_from_last || !world_from_cam) {
+    return std::nullopt;
+  }
+  MotionPrior motion{.cam_from_last_cam = Inverse(*world_from_cam) * *world_from_last,
+                     .last_timestamp = from};
+  const Rigid3& step = motion.cam_from_last_cam;
+  const double turn = std::max(kLeast, options.sigma_turn * LogSo3(step.rotation).norm());
+  const double way = std::max(kLeast, options.sigma_way * step.translation.norm());
+  motion.covariance.diagonal() << Eigen::Vector3d::Constant(turn * turn),
+      Eigen::Vector3d::Constant(way * way);
+  return motion;
 }
 
 }  // namespace hullslam

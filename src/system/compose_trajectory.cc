@@ -69,7 +69,9 @@ void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFr
   for (const TrackedFrame& found : early) {
     TrackedFrame& frame = frames[found.frame.value - frames.front().frame.value];
     if (frame.state != TrackingState::kTracked || found.inliers >= kMinFoundAgain * frame.inliers) {
+      const std::optional<Odometry> odometry = frame.odometry;
       frame = found;
+      frame.odometry = odometry;
     }
   }
 }

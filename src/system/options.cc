@@ -41,6 +41,14 @@ void RunOptions::Bind(OptionTable& options) {
             "the run fails (exit code 1) if no frame of a longer time at its end has a pose, s");
 }
 
+void OdometryOptions::Bind(OptionTable& options) {
+  const OptionScope scope(options, "odometry");
+  scope.Add("sigma_way", &sigma_way, Range::Between(0.0, 1.0),
+            "standard deviation of a step of --odometry, as a share of its length");
+  scope.Add("sigma_turn", &sigma_turn, Range::Between(0.0, 1.0),
+            "standard deviation of a step of --odometry, as a share of its rotation");
+}
+
 OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
@@ -60,6 +68,7 @@ OptionTable SystemOptions::Bind() {
   mapping.Bind(table);
   objects.Bind(table);
   loop.Bind(table);
+  odometry.Bind(table);
   run.Bind(table);
   for (const char* name :
        {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",

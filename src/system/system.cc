@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -142,10 +143,12 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
 }
 
 TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& second,
-                           std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks) {
+                           std::vector<InstanceMask> masks, std::vector<InstanceMask> right_masks,
+                           const std::optional<MotionPrior>& motion) {
   const bool is_stereo = options_.sensor == SensorKind::kStereo;
   ImageInput input{timestamp, ToGrey(image, options_.rgb_order), cv::Mat(), std::move(masks)};
   input.right_masks = std::move(right_masks);
+  input.motion = motion;
   if (!second.empty()) {
     (is_stereo ? input.right : input.depth) =
         is_stereo ? ToGrey(second, options_.rgb_order) : second;
@@ -192,6 +195,7 @@ std::vector<std::string> System::warnings() const { return frame_builder_->warni
 
 TrackedFrame System::Track(BuiltFrame built) {
   CheckStamp(built.frame->timestamp);
+  CheckMotion(*built.frame);
   CheckVectors(*built.frame);
   built.frame->id = FrameId(start_.map.NextFrame().value + static_cast<uint32_t>(frames_.size()));
   times_.Add("frame", built.milliseconds);
@@ -244,7 +248,7 @@ void System::KeepAwaiting(const FrameReport& report, std::shared_ptr<const Detec
     awaiting.timestamp = tracked.timestamp;
     awaiting.input = std::move(input);
     if (tracked.state == TrackingState::kTracked && tracked.from_keyframe &&
-        !is_localization_only_) {
+        tracked.prior != PriorUse::kAlone && !is_localization_only_) {
       awaiting.request = KeyframeRequest{.frame = report.frame,
                                          .pose = *tracked.from_keyframe,
                                          .landmarks = report.landmarks,
@@ -309,6 +313,39 @@ void System::CheckStamp(double timestamp) const {
   constexpr double kMost = 1e11;  // s; milliseconds since 1970 are more
   Check(std::abs(timestamp) <= kMost, "the time stamp is too large to be in seconds");
   Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
+}
+
+void System::CheckMotion(const Frame& frame) const {
+  if (!frame.motion) {
+    return;
+  }
+  const auto refuse = [&](const std::string& fault) {
+    throw InputError(
+        fmt::format("the motion prior of the frame at {:.6f} s {}", frame.timestamp, fault));
+  };
+  if (sensor_.IsMonocular()) {
+    refuse("is in metres, expected none for a monocular camera, whose map is not");
+  }
+  if (frames_.empty()) {
+    refuse("is that of the first frame, expected one of a later frame");
+  }
+  constexpr double kSameStamp = 1e-6;  // s
+  const MotionPrior& motion = *frame.motion;
+  const double last = frames_.back().timestamp;
+  if (!(std::abs(motion.last_timestamp - last) <= kSameStamp)) {
+    refuse(fmt::format("begins at {:.6f} s, expected the stamp of the frame before, {:.6f} s",
+                       motion.last_timestamp, last));
+  }
+  constexpr double kTolerance = 1e-3;
+  const Rigid3& step = motion.cam_from_last_cam;
+  const Eigen::Matrix<double, 6, 6>& covariance = motion.covariance;
+  if (!step.translation.allFinite() || !(std::abs(step.rotation.norm() - 1.0) <= kTolerance)) {
+    refuse("is not finite, or its quaternion has not the length 1");
+  }
+  if (!covariance.allFinite() || !covariance.isApprox(covariance.transpose(), kTolerance) ||
+      covariance.llt().info() != Eigen::Success) {
+    refuse("has a covariance that is not finite, symmetric and positive definite");
+  }
 }
 
 // Vectors of different lengths are of different networks, so no question could be asked about the

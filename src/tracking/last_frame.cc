@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "hullslam/util/check.h"
@@ -31,6 +32,7 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 LastFrame FollowMap(const Map& map, LastFrame last) {
   if (last.pose) {
     const double change = map.ScaleOf(last.pose->reference) / last.pose->reference_scale;
+    last.map_per_odometry *= change / std::exchange(last.followed_change, change);
     if (last.motion) {
       last.motion->cam_from_last_cam.translation *= change;
     }
@@ -45,6 +47,7 @@ LastFrame FollowMap(const Map& map, LastFrame last) {
     last.landmarks = map.keyframes().At(*keyframe).landmarks;
     last.reference = *keyframe;
     last.pose = RelativePose{*keyframe, Rigid3(), map.ScaleOf(*keyframe)};
+    last.followed_change = 1.0;
   }
   Check(last.pose.has_value(), "the map does not know the last frame");
   last.reference = map.NearestAlive(last.reference);
@@ -62,7 +65,20 @@ std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& fram
                       frame.timestamp - last.frame->timestamp};
 }
 
+std::optional<MotionPrior> MotionAhead(const LastFrame& last, const Frame& frame) {
+  const bool is_next = last.frame != nullptr && frame.id.value == last.frame->id.value + 1;
+  if (is_next || !last.ahead || !frame.motion) {
+    return is_next ? frame.motion : std::nullopt;
+  }
+  const Rigid3& step = frame.motion->cam_from_last_cam;
+  return MotionPrior{step * last.ahead->cam_from_last_cam, last.ahead->last_timestamp,
+                     InAxesOf(step, last.ahead->covariance) + frame.motion->covariance};
+}
+
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
+  if (last.ahead) {
+    return last.ahead->cam_from_last_cam;
+  }
   if (!last.motion) {
     return std::nullopt;
   }
@@ -71,6 +87,50 @@ std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
     return std::nullopt;
   }
   return PartOfMotion(last.motion->cam_from_last_cam, time_step / last.motion->duration);
+}
+
+std::optional<Odometry> OdometryChain::Add(const TrackedFrame& tracked, const LastFrame& last,
+                                           const std::optional<MotionPrior>& prior,
+                                           uint32_t corrections) {
+  const bool is_tracked = tracked.state == TrackingState::kTracked;
+  const double time_step = tracked.timestamp - std::exchange(timestamp_, tracked.timestamp);
+  const bool was_corrected = std::exchange(corrections_, corrections) != corrections;
+  if (!odometry_) {
+    if (is_tracked) {
+      odometry_.emplace();
+      odometry_->odom_from_cam = tracked.world_from_cam();
+      odometry_->corrected_at = tracked.frame;
+    }
+    return odometry_;
+  }
+  Rigid3 cam_from_last;
+  if (is_tracked && last.motion) {
+    odometry_->step = OdometryStep::kMeasured;
+    cam_from_last = last.motion->cam_from_last_cam;
+    cam_from_last.translation /= last.map_per_odometry;
+    motion_ = {cam_from_last, time_step};
+    end_of_prediction_ = tracked.timestamp + kMaxExtrapolation * time_step;
+  } else if (prior) {
+    odometry_->step = OdometryStep::kPrior;
+    cam_from_last = prior->cam_from_last_cam;
+  } else if (tracked.timestamp <= end_of_prediction_) {
+    odometry_->step = OdometryStep::kPredicted;
+    cam_from_last = PartOfMotion(motion_.cam_from_last_cam, time_step / motion_.duration);
+  } else {
+    odometry_->step = OdometryStep::kStopped;
+  }
+  odometry_->odom_from_cam = odometry_->odom_from_cam * Inverse(cam_from_last);
+  odometry_->linear_velocity = -MeanVelocity(cam_from_last, time_step).linear;
+  odometry_->angular_velocity = -MeanVelocity(cam_from_last, time_step).angular;
+  if (is_tracked) {
+    odometry_->map_from_odom = tracked.world_from_cam() * Inverse(odometry_->odom_from_cam);
+    const bool is_continued =
+        odometry_->step == OdometryStep::kMeasured || tracked.prior == PriorUse::kAlone;
+    if (was_corrected || !is_continued) {
+      odometry_->corrected_at = tracked.frame;
+    }
+  }
+  return odometry_;
 }
 
 double ShareInImage(const Map& map, const Sensor& sensor, const Rigid3& cam_from_world,

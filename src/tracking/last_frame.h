@@ -12,6 +12,7 @@
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
 
 namespace hullslam {
 
@@ -40,7 +41,21 @@ struct LastFrame {
   std::optional<CameraMotion> motion;  // to this frame; absent after lost frames
   // The velocity that last corrected a frame of a rolling shutter (CorrectShutter).
   std::optional<TimedVelocity> velocity;
+  // A length of 1 in the odometry has this length in the map.
+  double map_per_odometry = 1.0;
+  double followed_change = 1.0;  // of the unit since `pose` was made, as FollowMap knows it
+  // The covariance of the pose by the frame's own measurements, and all of it; in the axes of the
+  // camera. 0 for a frame of the initial map.
+  Eigen::Matrix<double, 6, 6> measured_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  double median_depth = 0.0;  // of the landmarks
+  // The motion by priors from this frame to the one that is tracked now (MotionAhead).
+  std::optional<MotionPrior> ahead = std::nullopt;
 };
+
+// The motion from the last frame to this one, if the priors of all frames since then are known:
+// last.ahead is that to the frame before this one, absent if this is the last frame.
+std::optional<MotionPrior> MotionAhead(const LastFrame& last, const Frame& frame);
 
 // Brings the last frame up to date with the current map: its pose, the scale of its motion, its
 // reference keyframe and its landmarks. If the frame has become a keyframe, it gets the landmarks
@@ -53,10 +68,29 @@ LastFrame FollowMap(const Map& map, LastFrame last);
 std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
                                         const Rigid3& cam_from_world);
 
-// The motion from the last frame to a frame at `timestamp` (s), if the camera keeps its velocity.
-// Null if the velocity is not known, or if the time step is much longer than the one over which the
-// velocity was measured: then the velocity may have changed.
+// The motion from the last frame to a frame at `timestamp` (s): last.ahead if it is known, else
+// that of a camera that keeps its velocity. Null if the velocity is not known, or if the time step
+// is much longer than the one over which the velocity was measured: then the velocity may have
+// changed.
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp);
+
+// Composes the odometry of a run (Odometry).
+class OdometryChain {
+ public:
+  // The odometry of the next frame; absent before the first tracked one. last.motion is the motion
+  // to it if it was measured, `prior` that of the frame, and `corrections` Map::correction_count()
+  // of the map that it was tracked in.
+  std::optional<Odometry> Add(const TrackedFrame& tracked, const LastFrame& last,
+                              const std::optional<MotionPrior>& prior, uint32_t corrections);
+
+ private:
+  std::optional<Odometry> odometry_;  // of the last frame
+  double timestamp_ = 0.0;            // s, of the last frame
+  uint32_t corrections_ = 0;
+  // The last measured motion, in the unit of the odometry, and the time until which it predicts.
+  CameraMotion motion_;
+  double end_of_prediction_ = 0.0;  // s
+};
 
 // The share of the landmarks that a camera at `cam_from_world` has in its image. Ids that are
 // invalid or that the map does not have are left out; 1 if none remains.

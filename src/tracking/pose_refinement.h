@@ -10,6 +10,7 @@
 #include "hullslam/util/id.h"
 #include "optim/joint_pose_optimization.h"
 #include "tracking/tracking_context.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 
@@ -22,9 +23,12 @@ struct PoseEstimate {
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
+  double median_depth = 0.0;          // of the landmarks; 0 without landmarks
   // How well landmarks and objects determine the pose: CornerSigma at the median depth of the
   // landmarks, px. 0 without landmarks.
   double corner_sigma = 0.0;
+  // JointPoseResult::information; 0 without landmarks.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
   // place.
   KeyframeId keyframe_of_place;
@@ -33,9 +37,37 @@ struct PoseEstimate {
   int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
 };
 
+// The covariances of poses (TrackedFrame::covariance). A frame is measured against its landmarks
+// with the covariance P = information^-1. The landmarks that a keyframe created share the error of
+// its pose, which does not average out. So the covariance of a frame is P + the mean of D over the
+// keyframes that created its landmarks, and D of a keyframe is the covariance of its frame; 0 for
+// those that the map began with. D grows where the camera enters a new place, and is small again
+// where it returns. The drift of a monocular map's scale is not part of it.
+class DriftModel {
+ public:
+  // The covariance of the pose, in the axes of the camera (Retract).
+  Eigen::Matrix<double, 6, 6> Covariance(const Map& map, const PoseEstimate& estimate) const;
+  // Notes the covariance of a frame that is to become a keyframe.
+  void Add(FrameId keyframe, const Rigid3& cam_from_world,
+           const Eigen::Matrix<double, 6, 6>& covariance);
+
+ private:
+  struct Drift {
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  };
+  IdMap<FrameId, Drift> drifts_;  // D, in the axes of the world
+};
+
 // The estimate with the pose that its landmarks and the objects explain best (OptimizeJointPose).
 // Landmarks that do not agree with this pose are left out of it.
 PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContext& context,
                         std::span<const PoseObject> objects, PoseEstimate estimate);
+
+// Adds a pose that is expected from a motion prior, with its covariance by the parameters of
+// Retract, to an estimate that was made without it: the sum of the squared errors of both is least,
+// as if the prior had been a term of the normal equations. Returns false, and does nothing, if the
+// two differ by more than their covariances allow (99.9 %).
+bool FusePrior(const Rigid3& expected, const Eigen::Matrix<double, 6, 6>& covariance,
+               PoseEstimate& estimate);
 
 }  // namespace hullslam

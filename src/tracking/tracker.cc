@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/tracker.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -103,6 +105,11 @@ Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState sta
   return result;
 }
 
+// See TrackedFrame::quality; px.
+double QualityOf(double corner_sigma) {
+  return corner_sigma > 0.0 ? 1.0 - std::exp(-0.5 / (corner_sigma * corner_sigma)) : 0.0;
+}
+
 // Why this frame was not found, although there is a map. `last` is the frame before.
 TrackingFailure WhyLost(const Frame& frame, const TrackingContext& context, const LastFrame& last,
                         const PoseSearch& search) {
@@ -147,6 +154,9 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
   first_frame_ = first_frame_.IsValid() ? first_frame_ : frame->id;
   Result result = has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
   result.report.map_revision = has_map ? map->revision() : 0;
+  result.report.tracked.odometry =
+      odometry_.Add(result.report.tracked, last_, result.report.frame->motion,
+                    has_map ? map->correction_count() : 0);
   return result;
 }
 
@@ -190,6 +200,7 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
   last_request_time_ = frame->timestamp;
   Result result = MakeResult(std::move(frame), TrackingState::kTracked);
   result.report.tracked.inliers = static_cast<int>(initial.points.size());
+  result.report.tracked.cam_from_world = initial.views.back().cam_from_world;
   result.message = std::move(initial);
   return result;
 }
@@ -222,17 +233,89 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
+  last_.ahead = MotionAhead(last_, *frame);
   PoseSearch search;
-  std::optional<Found> found = FindCorrectedPose(frame, map, search);
-  // A new session is found in its map by words or objects only.
-  if (!found && MayMatchWidely() && last_.frame != nullptr) {
-    found = FindWidely(frame, map, search);
+  std::optional<Found> found = FindPose(frame, map, search);
+  if (!found && last_.ahead) {
+    if (std::optional<Result> reckoned = DeadReckon(frame, map)) {
+      return std::move(*reckoned);
+    }
   }
   if (!found) {
     const TrackingFailure reason = WhyLost(*frame, Context(), last_, search);
     return Lose(std::move(frame), map, reason);
   }
   return Accept(std::move(*found), frame, map, mapper);
+}
+
+std::optional<Tracker::Found> Tracker::FindWithoutPrior(const std::shared_ptr<const Frame>& frame,
+                                                        const Map& map, PoseSearch& search) const {
+  std::optional<Found> found = FindCorrectedPose(frame, map, search);
+  // A new session is found in its map by words or objects only.
+  if (!found && MayMatchWidely() && last_.frame != nullptr) {
+    found = FindWidely(frame, map, search);
+  }
+  return found;
+}
+
+// With a motion prior, which is left out if it finds no pose or not the one of the landmarks.
+std::optional<Tracker::Found> Tracker::FindPose(const std::shared_ptr<const Frame>& frame,
+                                                const Map& map, PoseSearch& search) {
+  std::optional<Found> found = FindWithoutPrior(frame, map, search);
+  if (!last_.ahead || FuseAhead(*last_.ahead, *frame, map, found)) {
+    return found;
+  }
+  const std::optional<MotionPrior> ahead = std::exchange(last_.ahead, std::nullopt);
+  found = FindWithoutPrior(frame, map, search);
+  FuseAhead(*ahead, *frame, map, found);
+  last_.ahead = ahead;
+  return found;
+}
+
+// Fuses a pose with the one that the motion `ahead` from the last frame leads to. Returns false if
+// they contradict each other or are in different islands.
+bool Tracker::FuseAhead(const MotionPrior& ahead, const Frame& frame, const Map& map,
+                        std::optional<Found>& found) const {
+  if (!found || IslandOf(map, found->tracking.reference) != IslandOf(map, last_.reference)) {
+    return false;
+  }
+  PoseEstimate& estimate = found->tracking.estimate;
+  const bool is_fused = FusePrior(
+      ahead.cam_from_last_cam * last_.cam_from_world,
+      InAxesOf(ahead.cam_from_last_cam, last_.measured_covariance) + ahead.covariance, estimate);
+  found->prior = is_fused ? PriorUse::kFused : PriorUse::kDropped;
+  if (found->motion) {
+    found->motion = MotionSince(last_, frame, estimate.cam_from_world);
+  }
+  return is_fused;
+}
+
+// The result of a frame that shows too few landmarks, by the priors since the last one that did.
+// Null if the pose has become too uncertain to tell what the image may show.
+std::optional<Tracker::Result> Tracker::DeadReckon(const std::shared_ptr<const Frame>& frame,
+                                                   const Map& map) {
+  constexpr double kMostOfWidth = 0.25;  // standard deviation of a pixel over the image's width
+  const MotionPrior& ahead = *last_.ahead;
+  const auto covariance_after = [&](const Eigen::Matrix<double, 6, 6>& covariance) {
+    return (InAxesOf(ahead.cam_from_last_cam, covariance) + ahead.covariance).eval();
+  };
+  const double sigma = CornerSigma(
+      sensor_.camera, covariance_after(last_.measured_covariance).inverse(), last_.median_depth);
+  if (last_.median_depth == 0.0 || !(sigma <= kMostOfWidth * sensor_.camera.width)) {
+    return std::nullopt;
+  }
+  last_.motion.reset();
+  last_.velocity.reset();
+  lost_since_.reset();
+  lost_frames_ = 0;
+  Result result = MakeResult(frame, TrackingState::kTracked);
+  TrackedFrame& tracked = result.report.tracked;
+  tracked.cam_from_world = ahead.cam_from_last_cam * last_.cam_from_world;
+  tracked.from_keyframe = map.RelativeTo(last_.reference, tracked.cam_from_world);
+  tracked.covariance = covariance_after(last_.covariance);
+  tracked.quality = QualityOf(sigma);
+  tracked.prior = PriorUse::kAlone;
+  return result;
 }
 
 // The result of a frame that was found. `as_read` is the frame before it was corrected.
@@ -255,9 +338,12 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
+  const Eigen::Matrix<double, 6, 6> covariance = drift_.Covariance(map, estimate);
+
   Result result;
   if (!is_localizing_only_ && (NeedsKeyframe(*frame, map, tracking, mapper) || found.is_wide)) {
     result.message = MakeRequest(frame, tracking, pose);
+    drift_.Add(frame->id, estimate.cam_from_world, covariance);
   }
   has_had_wide_steps_ |= found.is_wide;
   is_wide_ = found.is_wide || (is_wide_ && result.message);
@@ -268,7 +354,10 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
                                .cam_from_world = estimate.cam_from_world,
                                .inliers = estimate.inliers,
                                .is_unsure = CountConfirmed(map, tracking.reference, estimate) <
-                                            policy_.min_confirmed},
+                                            policy_.min_confirmed,
+                               .covariance = covariance,
+                               .quality = QualityOf(estimate.corner_sigma),
+                               .prior = found.prior},
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};
@@ -278,7 +367,11 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
            .reference = tracking.reference,
            .cam_from_world = estimate.cam_from_world,
            .motion = found.motion,
-           .velocity = found.corrected.velocity};
+           .velocity = found.corrected.velocity,
+           .map_per_odometry = last_.map_per_odometry,
+           .measured_covariance = estimate.information.inverse(),
+           .covariance = covariance,
+           .median_depth = estimate.median_depth};
   return result;
 }
 
@@ -300,7 +393,8 @@ std::optional<Tracker::Found> Tracker::FindCorrectedPose(
     const std::shared_ptr<const Frame>& as_read, const std::shared_ptr<const Frame>& tried,
     const Map& map, PoseSearch& search) const {
   // Between images that are far apart, a constant velocity predicts nothing.
-  const std::span<PoseSource* const> sources = std::span(kPoseSources).subspan(is_wide_ ? 1 : 0);
+  const std::span<PoseSource* const> sources =
+      std::span(kPoseSources).subspan(is_wide_ && !last_.ahead ? 1 : 0);
   search = FindConfirmedPose(*tried, map, Context(), last_, sources);
   if (!search.found) {
     return std::nullopt;
@@ -391,6 +485,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
                               TrackingFailure reason) {
   last_.motion.reset();
   last_.velocity.reset();
+  last_.ahead.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
   ++lost_frames_;
   if (!is_localizing_only_) {

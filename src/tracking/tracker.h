@@ -116,7 +116,15 @@ class Tracker {
     std::optional<CameraMotion> motion;  // from the last frame, if the pose follows from it
     bool is_relocalised = false;
     bool is_wide = false;  // found by kWideSources
+    PriorUse prior = PriorUse::kNone;
   };
+  std::optional<Found> FindPose(const std::shared_ptr<const Frame>& frame, const Map& map,
+                                PoseSearch& search);
+  std::optional<Found> FindWithoutPrior(const std::shared_ptr<const Frame>& frame, const Map& map,
+                                        PoseSearch& search) const;
+  bool FuseAhead(const MotionPrior& ahead, const Frame& frame, const Map& map,
+                 std::optional<Found>& found) const;
+  std::optional<Result> DeadReckon(const std::shared_ptr<const Frame>& frame, const Map& map);
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
                                          const Map& map, PoseSearch& search) const;
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
@@ -160,6 +168,8 @@ class Tracker {
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
   // frame with a pose.
   std::optional<double> last_request_time_;
+  OdometryChain odometry_;
+  DriftModel drift_;
   SightingCounter sightings_;  // since the last request
   // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;

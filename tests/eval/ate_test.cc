@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "hullslam/results/trajectory_file.h"
 #include "support/test_data.h"
@@ -249,6 +250,30 @@ TEST(Ate, NineOfTenPartnersAreEnough) {
   EXPECT_NE(described(40, 11).find("only 89 of the 100 poses"), std::string::npos);
   EXPECT_EQ(described(0, 50), "") << "poses before the ground truth can have no partner";
   EXPECT_EQ(described(50, 50), "") << "nor can those after it";
+}
+
+// Errors of one standard deviation in each of the six directions, in turn with both signs, so that
+// the alignment cannot take them away: NEES is 1 for each pose.
+TEST(Nees, IsTheSquaredErrorInStandardDeviations) {
+  const Trajectory reference = Helix(120);
+  const Rigid3 world_from_truth(ExpSo3({0.3, -0.2, 0.1}), {1.0, 2.0, 3.0});
+  Eigen::Matrix<double, 6, 1> sigma;
+  sigma << 0.001, 0.002, 0.003, 0.004, 0.005, 0.006;
+  const Eigen::Matrix<double, 6, 6> covariance = sigma.cwiseAbs2().asDiagonal();
+  Trajectory estimate;
+  for (size_t i = 0; i < reference.size(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(i / 2 % 6);
+    Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();
+    error[axis] = i % 2 == 0 ? sigma[axis] : -sigma[axis];
+    const Rigid3 cam_from_world = Inverse(world_from_truth * reference[i].world_from_cam);
+    estimate.push_back({reference[i].timestamp, Inverse(Retract(cam_from_world, error))});
+  }
+  std::vector<Eigen::Matrix<double, 6, 6>> covariances(estimate.size(), covariance);
+  const NeesResult nees = EvaluateNees(reference, estimate, covariances);
+  EXPECT_EQ(nees.poses, estimate.size());
+  EXPECT_NEAR(nees.ratio.mean, 1.0 / 6.0, 0.01);
+  covariances[0].setZero();
+  EXPECT_EQ(EvaluateNees(reference, estimate, covariances).poses, estimate.size() - 1);
 }
 
 }  // namespace

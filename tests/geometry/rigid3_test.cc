@@ -181,5 +181,31 @@ TEST(Rigid3, PartOfAMotionAsComputedByHand) {
   EXPECT_LT(Distance(PartOfMotion(small, 3.0), small * small * small), 1e-13);
 }
 
+TEST(Rigid3, DifferenceUndoesRetract) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3 pose(ExpSo3(random.Vector()), random.Vector());
+    Eigen::Matrix<double, 6, 1> delta;
+    delta << random.Vector(), random.Vector();
+    EXPECT_LT((Difference(pose, Retract(pose, delta)) - delta).norm(), 1e-12);
+  }
+}
+
+TEST(Rigid3, AdjointMovesASmallMotionToOtherAxes) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3 a_from_world(ExpSo3(random.Vector()), random.Vector());
+    const Rigid3 b_from_a(ExpSo3(random.Vector()), random.Vector());
+    Eigen::Matrix<double, 6, 1> delta;
+    delta << random.Vector(), random.Vector();
+    delta *= 1e-6;
+    const Rigid3 moved = b_from_a * Retract(a_from_world, delta);
+    EXPECT_LT(Distance(moved, Retract(b_from_a * a_from_world, Adjoint(b_from_a) * delta)), 1e-10);
+    const Eigen::Matrix<double, 6, 6> covariance = delta * delta.transpose();
+    const Eigen::Matrix<double, 6, 1> there = Adjoint(b_from_a) * delta;
+    EXPECT_TRUE(InAxesOf(b_from_a, covariance).isApprox(there * there.transpose(), 1e-9));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -80,5 +80,17 @@ TEST(Sighting, IsZeroAtFirst) {
   EXPECT_EQ(sighting.found, 0);
 }
 
+TEST(Odometry, HasNamesForFiles) {
+  EXPECT_EQ(ToString(OdometryStep::kBegun), "begun");
+  EXPECT_EQ(ToString(OdometryStep::kMeasured), "measured");
+  EXPECT_EQ(ToString(OdometryStep::kPrior), "prior");
+  EXPECT_EQ(ToString(OdometryStep::kPredicted), "predicted");
+  EXPECT_EQ(ToString(OdometryStep::kStopped), "stopped");
+  EXPECT_EQ(ToString(PriorUse::kNone), "none");
+  EXPECT_EQ(ToString(PriorUse::kFused), "fused");
+  EXPECT_EQ(ToString(PriorUse::kDropped), "dropped");
+  EXPECT_EQ(ToString(PriorUse::kAlone), "alone");
+}
+
 }  // namespace
 }  // namespace hullslam

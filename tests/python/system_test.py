@@ -61,6 +61,25 @@ def test_a_lost_frame_says_why(slam, wall):
     assert again.events[0].object is None and again.events[0].scale == 1.0
 
 
+def test_a_motion_prior_crosses_black_images(slam, wall):
+    first, *_, last = wall.track(slam, 0, 5)
+    assert first.odometry_step == "begun" and last.odometry_step == "measured"
+    np.testing.assert_allclose(last.map_from_odom @ last.odom_from_cam, last.world_from_cam,
+                               atol=1e-9)
+    assert last.covariance.shape == (6, 6) and 0.0 < last.quality <= 1.0
+    assert np.linalg.norm(last.linear_velocity) > 0.0
+    step = last.cam_from_world @ np.linalg.inv(first.cam_from_world)
+    with pytest.raises(hullslam.InputError, match="together"):
+        slam.track(wall.image(5), wall.depth, timestamp=0.2, motion=step)
+    with pytest.raises(hullslam.InputError, match="positive definite"):
+        slam.track(wall.image(5), wall.depth, timestamp=0.2, motion=step,
+                   motion_covariance=np.zeros((6, 6)))
+    black = slam.track(np.zeros_like(wall.image(0)), wall.depth, timestamp=0.2, motion=step,
+                       motion_covariance=1e-6 * np.eye(6))
+    assert (black.state, black.prior) == ("tracked", "alone")
+    np.testing.assert_allclose(black.cam_from_world, step @ last.cam_from_world, atol=1e-9)
+
+
 def test_a_monocular_camera_says_why_it_has_no_map(settings, wall):
     slam = hullslam.System(settings, "mono")
     result = slam.track(wall.image(0), timestamp=0.0)

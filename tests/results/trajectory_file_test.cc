@@ -5,9 +5,11 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "files/text_rows.h"
 #include "hullslam/util/check.h"
+#include "results/pose_file.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -141,6 +143,27 @@ TEST(TrajectoryFile, PartsHaveATitle) {
       {{}, one}, {"session 1: desk", one}, {"session 2: a\nroom", {}}};
   EXPECT_EQ(FormatTrajectory(parts),
             head + line + "# session 1: desk\n" + line + "# session 2: a?room\n");
+}
+
+// A trajectory to other readers, and each covariance as it was.
+TEST(LivePoses, AreReadWithTheirCovariances) {
+  TrackedFrame frame;
+  frame.timestamp = 1.5;
+  frame.state = TrackingState::kTracked;
+  frame.cam_from_world.translation = {-1.0, -2.0, -3.0};
+  frame.covariance = Eigen::Matrix<double, 6, 6>::Identity();
+  (*frame.covariance)(0, 5) = (*frame.covariance)(5, 0) = 0.25;
+  frame.odometry.emplace().corrected_at = FrameId(7);
+  TrackedFrame lost = frame;
+  lost.state = TrackingState::kLost;
+  lost.timestamp = 2.0;
+  const TemporaryFolder folder;
+  const PoseFile file = ReadPoseFile(
+      folder.Write("live_poses.txt", FormatLivePoses(std::vector<TrackedFrame>{frame, lost})));
+  ASSERT_EQ(file.poses.size(), 1U);
+  EXPECT_EQ(file.poses[0].world_from_cam.translation, Eigen::Vector3d(1.0, 2.0, 3.0));
+  ASSERT_EQ(file.covariances.size(), 1U);
+  EXPECT_EQ(file.covariances[0], *frame.covariance);
 }
 
 }  // namespace

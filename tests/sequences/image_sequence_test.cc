@@ -150,5 +150,25 @@ TEST(ParseFrameRange, AMissingNumberIsAnEndOfTheSequence) {
   }
 }
 
+TEST(ImageSequence, GivesTheMotionBetweenTwoStamps) {
+  ImageSequence sequence;
+  Trajectory& odometry = sequence.odometry.emplace();
+  for (int i = 0; i < 3; ++i) {
+    odometry.push_back({0.1 * i, Rigid3(ExpSo3({0.0, 0.0, 0.5 * i}), {1.0 * i, 0.0, 0.0})});
+  }
+  const OdometryOptions options;
+  const std::optional<MotionPrior> motion = PriorBetween(sequence, 0.0, 0.1, options);
+  ASSERT_TRUE(motion.has_value());
+  EXPECT_EQ(motion->last_timestamp, 0.0);
+  const Rigid3 expected = Inverse(odometry[1].world_from_cam);
+  EXPECT_LT((motion->cam_from_last_cam.translation - expected.translation).norm(), 1e-12);
+  EXPECT_NEAR(motion->covariance(0, 0), 0.01 * 0.01, 1e-12) << "2 % of 0.5 rad";
+  EXPECT_NEAR(motion->covariance(5, 5), 0.02 * 0.02, 1e-12) << "2 % of 1 m";
+  const std::optional<MotionPrior> rest = PriorBetween(sequence, 0.1, 0.1, options);
+  EXPECT_NEAR(rest->covariance(0, 0), 1e-8, 1e-15);
+  EXPECT_NEAR(rest->covariance(5, 5), 1e-8, 1e-15);
+  EXPECT_FALSE(PriorBetween(sequence, 0.1, 0.3, options).has_value());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -917,5 +917,36 @@ TEST(SystemStart, LocalizationNeedsAMap) {
   EXPECT_EQ(System(options, PipelineKind::kSequential, {.session_name = "a"}).map(), nullptr);
 }
 
+TEST(System, MotionsThatCannotBeUsedAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  MotionPrior motion;
+  const auto track = [&](int index) {
+    return system.Track(0.1 * index, TheWall().Photograph(index), Wall::Depth(index), {}, {},
+                        motion);
+  };
+  ExpectInputError([&] { track(0); }, {"0.000000 s", "first frame"});
+  system.Track(0.0, TheWall().Photograph(0), Wall::Depth(0));
+  motion.last_timestamp = 0.05;
+  ExpectInputError([&] { track(1); }, {"begins at 0.050000 s", "the frame before, 0.000000 s"});
+  motion.last_timestamp = 0.0;
+  motion.covariance(2, 2) = 0.0;
+  ExpectInputError([&] { track(1); }, {"0.100000 s", "positive definite"});
+  motion.covariance(2, 2) = std::numeric_limits<double>::quiet_NaN();
+  ExpectInputError([&] { track(1); }, {"positive definite"});
+  motion.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
+  motion.cam_from_last_cam.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  ExpectInputError([&] { track(1); }, {"not finite"});
+  EXPECT_EQ(system.frames().size(), 1u) << "a refused frame changes nothing";
+  motion.cam_from_last_cam = Wall::CamFromWorld(1);
+  EXPECT_EQ(track(1).prior, PriorUse::kFused);
+
+  SystemOptions options = Wall::Options();
+  options.sensor = SensorKind::kMonocular;
+  System monocular(options, PipelineKind::kSequential);
+  monocular.Track(0.0, TheWall().Photograph(0));
+  ExpectInputError([&] { monocular.Track(0.1, TheWall().Photograph(1), {}, {}, {}, motion); },
+                   {"monocular", "metres"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -152,6 +153,104 @@ class TrackerWith : public TrackerTest, public testing::WithParamInterface<TestC
 };
 
 HULLSLAM_WITH_ALL_CAMERAS(TrackerWith);
+
+// Frames with the motion from the frame before, which may be wrong by `error`.
+class TrackerWithPrior : public TrackerTest {
+ protected:
+  std::shared_ptr<Frame> WithPrior(const std::shared_ptr<const Frame>& frame,
+                                   const Rigid3& error = Rigid3()) const {
+    auto result = std::make_shared<Frame>(*frame);
+    const auto index = static_cast<double>(frame->id.value);
+    result->motion = MotionPrior{error * SyntheticWorld::CamFromWorld(index) *
+                                     Inverse(SyntheticWorld::CamFromWorld(index - 1.0)),
+                                 (index - 1.0) / 30.0, 1e-6 * MotionPrior().covariance};
+    return result;
+  }
+  std::shared_ptr<Frame> Black(uint32_t index) const {
+    return WithPrior(Select(*world_.Observe(index).frame, {}));
+  }
+};
+
+TEST_F(TrackerWithPrior, ARightPriorIsFused) {
+  Begin();
+  TrackFrames(1, 3);
+  const TrackedFrame tracked = Process(WithPrior(world_.Observe(4).frame)).report.tracked;
+  EXPECT_EQ(tracked.prior, PriorUse::kFused);
+  ExpectNear(tracked.cam_from_world, SyntheticWorld::CamFromWorld(4), 1e-3);
+}
+
+// The result has the bits of a tracker without a prior.
+TEST_F(TrackerWithPrior, AWrongPriorIsDropped) {
+  Begin();
+  TrackFrames(1, 3);
+  Tracker other(world_.sensor(), options_);
+  other.Process(world_.Observe(0).frame, nullptr, kIdle);
+  for (uint32_t i = 1; i <= 3; ++i) {
+    other.Process(world_.Observe(i).frame, map_, kIdle);
+  }
+  const Rigid3 error(ExpSo3({0.05, 0.0, 0.0}), {0.1, 0.0, 0.0});
+  const TrackedFrame tracked = Process(WithPrior(world_.Observe(4).frame, error)).report.tracked;
+  EXPECT_EQ(tracked.prior, PriorUse::kDropped);
+  EXPECT_EQ(tracked.odometry->step, OdometryStep::kMeasured);
+  const TrackedFrame without = other.Process(world_.Observe(4).frame, map_, kIdle).report.tracked;
+  EXPECT_EQ(tracked.cam_from_world.translation, without.cam_from_world.translation);
+}
+
+TEST_F(TrackerWithPrior, BlackImagesAreCrossed) {
+  Begin();
+  TrackFrames(1, 3);
+  Process(WithPrior(world_.Observe(4).frame));
+  double last = 0.0;
+  for (uint32_t i = 5; i <= 34; ++i) {
+    const Tracker::Result result = Process(Black(i));
+    const TrackedFrame& tracked = result.report.tracked;
+    ASSERT_EQ(tracked.prior, PriorUse::kAlone) << i;
+    EXPECT_EQ(tracked.state, TrackingState::kTracked);
+    EXPECT_EQ(tracked.odometry->step, OdometryStep::kPrior);
+    EXPECT_EQ(tracked.odometry->corrected_at, FrameId(0)) << "the map has not jumped";
+    EXPECT_FALSE(result.message.has_value());
+    ExpectNear(tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-3);
+    EXPECT_GT(tracked.covariance->trace(), last);
+    last = tracked.covariance->trace();
+  }
+  const TrackedFrame found = Process(WithPrior(world_.Observe(35).frame)).report.tracked;
+  EXPECT_EQ(found.prior, PriorUse::kFused);
+  EXPECT_GT(found.inliers, 50);
+  EXPECT_LT(found.covariance->trace(), last);
+}
+
+// Each step may be wrong by 30 degrees, so after a few of them the image may show anything.
+TEST_F(TrackerWithPrior, AnUncertainPoseIsLost) {
+  Begin();
+  TrackFrames(1, 3);
+  auto frame = Black(4);
+  frame->motion->covariance *= 0.25 / frame->motion->covariance(0, 0);
+  EXPECT_EQ(Process(frame).report.tracked.state, TrackingState::kLost);
+}
+
+// The frames of the first keyframe have no drift. The keyframe adds its own covariance, so those
+// that only see what it created are less certain.
+TEST_F(TrackerTest, CovariancesGrowWithTheDriftOfTheMap) {
+  Begin();
+  DriftModel drift;
+  PoseEstimate estimate;
+  estimate.landmarks = {made_.landmarks[0]};
+  estimate.information = 4.0 * Eigen::Matrix<double, 6, 6>::Identity();
+  const KeyframeId creator = map_->landmarks().At(estimate.landmarks[0]).created_by;
+  EXPECT_NEAR(drift.Covariance(*map_, estimate)(0, 0), 0.25, 1e-12);
+  drift.Add(map_->keyframes().At(creator).frame->id, Rigid3(),
+            0.5 * Eigen::Matrix<double, 6, 6>::Identity());
+  EXPECT_NEAR(drift.Covariance(*map_, estimate)(0, 0), 0.75, 1e-12);
+}
+
+TEST_F(TrackerTest, QualityIsHighWithManyLandmarks) {
+  Begin();
+  TrackFrames(1, 2);
+  const TrackedFrame tracked = Process(world_.Observe(3).frame).report.tracked;
+  EXPECT_GT(tracked.quality, 0.9);
+  ASSERT_TRUE(tracked.covariance.has_value());
+  EXPECT_GT(tracked.covariance->llt().matrixL().determinant(), 0.0);
+}
 
 // Half of the landmarks of every keyframe are common ones, the other half only this keyframe
 // observes. The frame shows the common ones. So no keyframe is needed if landmarks with a single

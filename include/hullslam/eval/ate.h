@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,20 @@ struct AteResult {
 // per second is enough if it reaches over a tenth of the estimate's time.
 AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options = {});
+
+// Whether the covariances of poses are honest, by the normalised estimation error squared (NEES):
+// d' C^-1 d, where d is the error of the pose by the six parameters of Retract and C its
+// covariance. Its mean is 6 if the covariances are right, and larger if they are too small.
+struct NeesResult {
+  size_t poses = 0;       // that have a true pose at their time and a covariance
+  ErrorStatistics ratio;  // of NEES / 6
+};
+
+// `covariances`: one per pose of the estimate, of TrackedFrame::covariance; those that cannot be
+// inverted are left out. The estimate is aligned by the rigid motion of its world for which the sum
+// of NEES is least. The true poses are interpolated, and count as free of errors.
+NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
+                        std::span<const Eigen::Matrix<double, 6, 6>> covariances);
 
 // Describes pairs that are fewer than the stamps allow: less than nine tenths of
 // AteResult::expected_pairs. Then the stamps of one side have a wrong rate, or the reference has

@@ -48,11 +48,14 @@ std::string DescribeSwappedRotations(const Trajectory& reference, const Trajecto
 struct TrajectoryErrors {
   AteOptions options;
   AteResult ate;
-  RpeResult rpe = {};                      // only if the absolute error could be computed
-  std::vector<std::string> warnings = {};  // faults of the stamps and of the reference
+  RpeResult rpe = {};                             // only if the absolute error could be computed
+  std::vector<std::string> warnings = {};         // faults of the stamps and of the reference
+  std::optional<NeesResult> nees = std::nullopt;  // absent without covariances
 };
 
+// `covariances`: as in EvaluateNees, or empty.
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
-                                    const AteOptions& options);
+                                    const AteOptions& options,
+                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances = {});
 
 }  // namespace hullslam

@@ -5,12 +5,14 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <optional>
 #include <vector>
 
 #include "hullslam/bow/bow_vector.h"
 #include "hullslam/features/feature_grid.h"
 #include "hullslam/frame/depth_grid.h"
 #include "hullslam/frame/detection.h"
+#include "hullslam/frame/image_input.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
@@ -66,6 +68,7 @@ struct Frame {
   std::vector<Detection> detections;
   DepthGrid depth;           // empty without depth
   double depth_delay = 0.0;  // s, as in ImageInput
+  std::optional<MotionPrior> motion;
   // How the keypoints were corrected for a rolling shutter (frame/rolling_shutter.h), for
   // detections that come later and for calibration. Null if they were not, and once there are
   // detections.

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/instance_mask.h"
+#include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
 
 // The camera of a pair that an image is from; a single camera is the left one.
 enum class ImageSide { kLeft, kRight };
+
+// The motion of the camera from the frame before, as wheels or an inertial sensor measure it.
+struct MotionPrior {
+  Rigid3 cam_from_last_cam;     // m; maps points of the camera frame of then to that of now
+  double last_timestamp = 0.0;  // s, of the frame before
+  // The covariance of the small motion d by which it is wrong: the true motion is
+  // Retract(cam_from_last_cam, d), d = (rotation in rad, translation in m) in the axes of the
+  // camera of now. Symmetric and positive definite.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
+};
 
 // One input frame; depth is registered to the colour image and has its shape, maybe not its size.
 struct ImageInput {
@@ -25,6 +38,8 @@ struct ImageInput {
   // Masks of the objects in the right image; may be empty, also beside other masks.
   std::vector<InstanceMask> right_masks = {};
   double depth_delay = 0.0;  // s, from the exposure of the image to that of the depth image
+  // Needs a camera with depth or a stereo camera, because it is in metres.
+  std::optional<MotionPrior> motion = {};
 };
 
 }  // namespace hullslam

@@ -42,6 +42,25 @@ Rigid3 PartOfMotion(const Rigid3& motion, double share);
 // then moved by delta[3..5]. The derivative at zero is dx_b / ddelta = [-Skew(x_b), I].
 Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta);
 
+// The delta for which Retract(a_from_world, delta) is b_from_world.
+inline Eigen::Matrix<double, 6, 1> Difference(const Rigid3& a_from_world,
+                                              const Rigid3& b_from_world) {
+  const Rigid3 b_from_a = b_from_world * Inverse(a_from_world);
+  Eigen::Matrix<double, 6, 1> delta;
+  delta << LogSo3(b_from_a.rotation), b_from_a.translation;
+  return delta;
+}
+
+// The matrix that turns a small motion (rotation, translation) in the axes of a into the same
+// motion in the axes of b: b_from_a * Retract(a_from_world, delta) is Retract(b_from_a *
+// a_from_world, Adjoint(b_from_a) * delta), to first order.
+Eigen::Matrix<double, 6, 6> Adjoint(const Rigid3& b_from_a);
+// The covariance of such a motion in the axes of b.
+inline Eigen::Matrix<double, 6, 6> InAxesOf(const Rigid3& b_from_a,
+                                            const Eigen::Matrix<double, 6, 6>& covariance_in_a) {
+  return Adjoint(b_from_a) * covariance_in_a * Adjoint(b_from_a).transpose();
+}
+
 // Angle between two rotations in radians, 0 to pi.
 double AngularDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 

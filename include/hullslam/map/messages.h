@@ -129,6 +129,74 @@ constexpr std::string_view ToString(TrackingState state) {
   }
 }
 
+// How the odometry went on from the frame before.
+enum class OdometryStep {
+  kBegun,      // the frame is the first one with a pose
+  kMeasured,   // by the motion between two tracked frames
+  kPrior,      // by MotionPrior, because the motion was not measured
+  kPredicted,  // with the velocity of the frames before, over lost frames
+  kStopped,    // not at all: the velocity is not known (any more)
+};
+
+// For messages and files: "begun", "measured" and so on.
+constexpr std::string_view ToString(OdometryStep step) {
+  switch (step) {
+    case OdometryStep::kBegun:
+      return "begun";
+    case OdometryStep::kMeasured:
+      return "measured";
+    case OdometryStep::kPrior:
+      return "prior";
+    case OdometryStep::kPredicted:
+      return "predicted";
+    default:
+      return "stopped";
+  }
+}
+
+// How the motion prior of a frame was used.
+enum class PriorUse {
+  kNone,     // there is none, or the frame before has no pose that it could begin at
+  kFused,    // as the prediction of the pose and as a measurement beside the landmarks
+  kDropped,  // not, because the landmarks contradict it
+  kAlone,    // the frame shows too few landmarks, so its pose is dead reckoned by the prior alone
+};
+
+// For messages and files: "none", "fused" and so on.
+constexpr std::string_view ToString(PriorUse use) {
+  switch (use) {
+    case PriorUse::kFused:
+      return "fused";
+    case PriorUse::kDropped:
+      return "dropped";
+    case PriorUse::kAlone:
+      return "alone";
+    default:
+      return "none";
+  }
+}
+
+// The pose of the camera in a world in which it never jumps, as REP 105 has it. It is the product
+// of the motions from each frame to the next, each as it was estimated in the map of its time. So
+// loops, joined islands, rescalings and relocalisations do not move it, but it drifts. Lengths are
+// in the unit that the map had at the first pose; a new monocular island begins with a new unit.
+struct Odometry {
+  // The world of the odometry is that of the map at the first pose.
+  Rigid3 odom_from_cam;
+  OdometryStep step = OdometryStep::kBegun;
+  // Pose of the camera in the map = map_from_odom * odom_from_cam, at tracked frames. At lost
+  // frames it is that of the last tracked frame.
+  Rigid3 map_from_odom;
+  // The last frame at which map_from_odom may have jumped: the map was corrected since the frame
+  // before (Map::correction_count), or the step was not measured, as after a relocalisation.
+  // Otherwise map_from_odom only follows the local adjustments of the map, a little per keyframe.
+  FrameId corrected_at;
+  // The mean velocity since the frame before, in the axes of the camera: of its centre (in units of
+  // length per second), and rad/s. 0 if the odometry has begun or stopped.
+  Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+};
+
 // One line of the trajectory.
 struct TrackedFrame {
   FrameId frame;
@@ -145,6 +213,18 @@ struct TrackedFrame {
   // observe. Such landmarks agree with their two keyframes even if these are wrong, so the pose,
   // and the scale from here on, may be wrong too.
   bool is_unsure = false;
+  // The covariance of the small motion d that leads from the pose to the true one: cam_from_world
+  // is to become Retract(cam_from_world, d). So d = (rotation in rad, translation) has the axes of
+  // the camera. The drift of the map since its first keyframe is part of it (docs/library.md).
+  // Absent if the frame is not tracked, or if it belongs to the initial map.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance = std::nullopt;
+  // How well the frame determines its pose among the landmarks, 0 to 1: the least probability that
+  // the pose places a point in a corner of the image, at the median depth of the landmarks, at most
+  // 1 px from its true pixel.
+  double quality = 0.0;
+  std::optional<Odometry> odometry = std::nullopt;  // absent before the first pose
+  // With kAlone the state is kTracked, but no landmark was found and no keyframe is made.
+  PriorUse prior = PriorUse::kNone;
 
   // The pose of the camera in the world, when the frame was tracked.
   Rigid3 world_from_cam() const { return Inverse(cam_from_world); }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/map/messages.h"
 #include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
@@ -24,6 +25,10 @@ Trajectory ReadKeyframes(const std::filesystem::path& path);
 // The trajectory in TUM's format: stamps with 6 decimals, values with 9, qw not negative. The same
 // poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
+
+// live_poses.txt (docs/outputs.md): the pose of each tracked frame as it was then, its covariance,
+// and its odometry. Reads as a trajectory too, because a first line names the columns.
+std::string FormatLivePoses(std::span<const TrackedFrame> frames);
 
 // Writes the trajectory in TUM's format. The file is complete or not there at all. Throws
 // InputError with `path` and the reason if it cannot be written.

@@ -17,6 +17,7 @@
 #include "hullslam/frame/image_input.h"
 #include "hullslam/frame/stereo_rectifier.h"
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/system/options.h"
 #include "hullslam/util/eigen_alignment.h"
 
 namespace hullslam {
@@ -79,6 +80,8 @@ struct ImageSequence {
   // The converted true trajectory, if the stamps, axes or format of its file are not as in a run's
   // trajectory.
   std::optional<Trajectory> converted_groundtruth;
+  // Poses of the camera of the images that the sequence gives, by wheels or an inertial sensor.
+  std::optional<Trajectory> odometry = {};
   // Messages for the user about faults in the files that do not end a run.
   std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
@@ -126,5 +129,16 @@ std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
 // used, is added to `warnings`.
 std::optional<Trajectory> TryGroundtruth(const ImageSequence& sequence,
                                          std::vector<std::string>& warnings);
+
+// Reads the odometry of the camera as read, in TUM's format; none if `path` is empty. Throws
+// InputError for a bad file, and for a monocular camera, because odometry is in metres and its map
+// is not.
+void ReadOdometry(const std::filesystem::path& path, SensorKind sensor, ImageSequence& sequence);
+
+// The motion between two stamps (s) by the odometry of the sequence. The standard deviations are at
+// least 0.1 mm and 0.1 mrad. Null if there is no odometry at one of them (InterpolatePose with gaps
+// of up to 0.5 s).
+std::optional<MotionPrior> PriorBetween(const ImageSequence& sequence, double from, double to,
+                                        const OdometryOptions& options);
 
 }  // namespace hullslam

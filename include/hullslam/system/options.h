@@ -27,6 +27,15 @@ struct RunOptions {
   void Bind(OptionTable& options);
 };
 
+// The error of the odometry of a sequence (PriorBetween).
+struct OdometryOptions {
+  double sigma_way = 0.02;   // standard deviation of a step, as a share of its length
+  double sigma_turn = 0.02;  // the same of its rotation
+
+  // Binds the keys `odometry.sigma_way` and `odometry.sigma_turn`.
+  void Bind(OptionTable& options);
+};
+
 // All options of a run. The defaults are in the structs. The camera has no default.
 struct SystemOptions {
   SensorKind sensor = SensorKind::kRgbd;  // not a setting of the table: each program has its own
@@ -41,6 +50,7 @@ struct SystemOptions {
   MappingOptions mapping;
   ObjectOptions objects;
   LoopOptions loop;
+  OdometryOptions odometry;
   RunOptions run;
   // The vocabulary for the words of frames and the index of the map. Null: frames have no words. It
   // is not a setting of the table; see ReadVocabulary() and FindDefaultVocabulary().

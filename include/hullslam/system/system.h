@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -92,16 +93,19 @@ class System {
   // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
   // `masks` show the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
   // makes them from images), `right_masks` those in the right image, which add lines of the same
-  // objects. Throws InputError for images of another type or size, for depth in metres that cannot
-  // be metres, for pairs that are swapped, twice the same or not rectified, and for masks that
-  // ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
-  // refused frame changes nothing.
+  // objects. `motion` is that of the camera since the frame before, by wheels or an inertial sensor
+  // (ImageInput). Throws InputError for images of another type or size, for depth in metres that
+  // cannot be metres, for pairs that are swapped, twice the same or not rectified, for masks that
+  // ValidateMasks() refuses, and for a motion of a monocular camera, with numbers that cannot be
+  // used or from another stamp than that of the frame before. Time stamps (s) must increase; throws
+  // CheckError otherwise. A refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give the last published state.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& second = {},
                      std::vector<InstanceMask> masks = {},
-                     std::vector<InstanceMask> right_masks = {});
+                     std::vector<InstanceMask> right_masks = {},
+                     const std::optional<MotionPrior>& motion = {});
   TrackedFrame Track(const ImageInput& image);
 
   // The two halves of Track(image). Building needs no map, so one other thread may build the next
@@ -203,6 +207,7 @@ class System {
   uint32_t OldestRevision() const;
   void FitDepthError(const ImageInput& image);
   void CheckStamp(double timestamp) const;
+  void CheckMotion(const Frame& frame) const;
   void CheckVectors(const Frame& frame);
 
   SystemOptions options_;

@@ -59,7 +59,7 @@ struct ObjectsArguments {
 };
 
 // A file of KITTI has no stamps: its poses are those of the other file, one for one.
-std::pair<Trajectory, Trajectory> ReadBoth(const TrajectoryArguments& arguments) {
+std::pair<PoseFile, PoseFile> ReadBoth(const TrajectoryArguments& arguments) {
   PoseFile reference = ReadPoseFile(arguments.groundtruth);
   PoseFile estimate = ReadPoseFile(arguments.estimate);
   if (!reference.has_stamps) {
@@ -70,7 +70,7 @@ std::pair<Trajectory, Trajectory> ReadBoth(const TrajectoryArguments& arguments)
   for (const PoseFile* const file : {&reference, &estimate}) {
     PrintWarnings(file->notes);
   }
-  return {std::move(reference.poses), std::move(estimate.poses)};
+  return {std::move(reference), std::move(estimate)};
 }
 
 CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
@@ -100,7 +100,8 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
 // no two poses of the trajectories can be paired.
 void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
   const auto [reference, estimate] = ReadBoth(arguments);
-  const TrajectoryErrors errors = EvaluateTrajectory(reference, estimate, arguments.ate);
+  const TrajectoryErrors errors =
+      EvaluateTrajectory(reference.poses, estimate.poses, arguments.ate, estimate.covariances);
   if (!errors.ate.ok()) {
     throw InputError(arguments.estimate + ": " + errors.ate.failure);
   }

@@ -136,7 +136,9 @@ std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map
   }
   if (matches.size() + PoseEstimate::kLandmarksPerObject * objects.objects.size() <
       context.min_motion_matches()) {
-    return std::nullopt;
+    // The local map may have other landmarks where a motion prior leads.
+    estimate.landmarks.assign(frame.features.size(), LandmarkId());
+    return last.ahead ? std::optional(std::move(estimate)) : std::nullopt;
   }
   estimate = RefinePose(frame, map, context, objects.objects, std::move(estimate));
   return estimate.EffectiveInliers() >= context.min_start_inliers()
