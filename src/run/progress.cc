@@ -14,11 +14,6 @@ namespace {
 constexpr std::chrono::milliseconds kRedraw(100);
 constexpr size_t kBarWidth = 24;
 
-std::string Bar(size_t done, size_t frames) {
-  const size_t filled = done * kBarWidth / frames;
-  return std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-}
-
 }  // namespace
 
 Progress::Progress(size_t frames, bool quiet)
@@ -40,7 +35,8 @@ void Progress::Show(size_t done, const std::function<std::string()>& state) {
       fmt::format("frame {}/{}  {:.1f} frames/s  {:.0f} s left{}", done, frames_, rate,
                   static_cast<double>(frames_ - done) / rate, state ? "  " + state() : "");
   if (is_terminal_) {
-    PrintText(stderr, fmt::format("\r[{}] {}\033[K", Bar(done, frames_), Printable(facts)));
+    const std::string bar(done * kBarWidth / frames_, '#');
+    PrintText(stderr, fmt::format("\r[{:.<{}}] {}\033[K", bar, kBarWidth, Printable(facts)));
     is_line_open_ = true;
   } else {
     PrintError("{}\n", facts);

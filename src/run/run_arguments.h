@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,10 @@ struct RunArguments {
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";
   bool overwrite = false;
-  std::filesystem::path save_map;  // empty: not saved
-  double checkpoint = 0.0;         // s; 0: the map is saved at the end only
-  std::filesystem::path load_map;  // empty: a new map
-  std::filesystem::path mcap;      // empty: not written
+  std::filesystem::path save_map;                               // empty: not saved
+  double checkpoint = std::numeric_limits<double>::infinity();  // s between saved maps
+  std::filesystem::path load_map;                               // empty: a new map
+  std::filesystem::path mcap;                                   // empty: not written
   bool localization = false;
   bool keep_islands = false;
   bool threaded = false;

@@ -67,10 +67,6 @@ void FinishMap(bool is_quiet, System& system) {
       });
 }
 
-double Milliseconds(Clock::duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
-
 // Notes what tracking tells about a frame that comes so long after the first one, s.
 void NoteFrame(const FrameReport& report, const FrameSelection& selection, double time,
                RunResult& result) {
@@ -116,8 +112,7 @@ void PrintNewWarnings(const System& system, size_t& printed, Progress& progress)
   }
 }
 
-// Tracks the frames up to the end or an interruption. Throws InputError if the input of a frame
-// cannot be used; the frames before it have been tracked. `shown` is the failure of the last frame.
+// Tracks frames until an interruption or bad input (InputError). `shown` is the last failure.
 void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>& shown,
                  Clock::time_point& start, Progress& progress, RunResult& result) {
   FrameSource frames(run.arguments.realtime ? Pace::kRealtime : Pace::kFast, run.sequence,
@@ -152,13 +147,12 @@ void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>&
     const Clock::time_point begin = Clock::now();
     const TrackedFrame frame = frames.Track(*loaded);
     PrintNewWarnings(run.system, warnings, progress);
-    if (run.arguments.checkpoint > 0.0) {
-      saver.Offer(run.system.map());
-    }
+    saver.Offer(run.system.map());
+    const std::chrono::duration<double, std::milli> time = Clock::now() - begin;
     run.live.AfterFrame({.grey = loaded->grey,
                          .number = result.given,
                          .build_ms = loaded->build_ms,
-                         .track_ms = Milliseconds(Clock::now() - begin)},
+                         .track_ms = time.count()},
                         run.system);
     progress.Show(result.given,
                   [&] { return DescribeState(frame.state, shown, run.system.map().get()); });
@@ -167,10 +161,8 @@ void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>&
 }
 
 void WarnOfFailedMasks(const SequenceMasks& masks) {
-  if (masks.network() == nullptr) {
-    return;
-  }
-  if (const NetworkMasks::Work work = masks.network()->work(); work.failures > 0) {
+  const auto work = masks.network() != nullptr ? masks.network()->work() : NetworkMasks::Work();
+  if (work.failures > 0) {
     PrintError("warning: the network fails on {}, which {} no masks; the first failure is {}\n",
                Counted(work.failures, "image"), work.failures == 1 ? "has" : "have",
                work.first_failure);
