@@ -211,7 +211,6 @@ double PeakMb() {
 struct Shift {
   double hours = 10.0;
   PipelineKind kind = PipelineKind::kSequential;
-  int max_keyframes = 0;
 };
 
 // A robot at work, and what is known about it so far.
@@ -222,7 +221,7 @@ class Patrol {
         vocabulary_(std::make_shared<const Vocabulary>(ReadVocabulary(FindDefaultVocabulary()))),
         sensor_(BenchSensor()),
         building_(3600.0 * shift.hours, sensor_, vocabulary_.get()),
-        system_(OptionsFor(shift), shift.kind) {}
+        system_(Options(), shift.kind) {}
 
   void Run() {
     fmt::print("{:>5} {:>9} {:>6} {:>9} {:>7} {:>23} {:>16} {:>5} {:>6} {:>5} {:>6} {:>6} {:>5}\n",
@@ -246,13 +245,12 @@ class Patrol {
   }
 
  private:
-  SystemOptions OptionsFor(const Shift& shift) const {
+  SystemOptions Options() const {
     SystemOptions options;
     options.camera = sensor_.camera;
     options.vocabulary = vocabulary_;
     // A robot that works on never reaches the end of its run.
     options.tracking.refine_at_end = false;
-    options.mapping.max_keyframes = shift.max_keyframes;
     return options;
   }
 
@@ -409,8 +407,6 @@ int main(int argc, char** argv) {
       port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--hours") {
       shift.hours = std::strtod(argv[i + 1], nullptr);
-    } else if (std::string_view(argv[i]) == "--max-keyframes") {
-      shift.max_keyframes = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else {
       frames = 0;
     }
@@ -420,7 +416,7 @@ int main(int argc, char** argv) {
     fmt::print(
         stderr,
         "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
-        "       scale_bench --hours H [--max-keyframes N] [--threaded]\n"
+        "       scale_bench --hours H [--threaded]\n"
         "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
         "frames\n");
     return 2;

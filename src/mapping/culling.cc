@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "frame/measure_point.h"
 #include "map/compaction.h"
@@ -137,17 +136,16 @@ struct Redundancy {
     ++landmarks;
     redundant += is_redundant ? 1 : 0;
   }
-  double Share() const { return static_cast<double>(redundant) / std::max(1, landmarks); }
   bool MostAreRedundant() const {
     return landmarks == 0 || redundant > kRedundantShare * landmarks;
   }
 };
 
-// Counts all landmarks of a keyframe, and the close ones.
-void CountRedundancy(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules,
-                     Redundancy& close, Redundancy& all) {
+bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules) {
   const Keyframe& keyframe = map.keyframes().At(id);
   const FrameFeatures& features = keyframe.frame->features;
+  Redundancy close;
+  Redundancy all;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (!keyframe.landmarks[i].IsValid()) {
       continue;
@@ -161,12 +159,6 @@ void CountRedundancy(const Map& map, KeyframeId id, const Sensor& sensor, const 
       close.Count(is_redundant);
     }
   }
-}
-
-bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules) {
-  Redundancy close;
-  Redundancy all;
-  CountRedundancy(map, id, sensor, rules, close, all);
   if (rules.only_close_landmarks) {
     return close.landmarks > 0 && close.MostAreRedundant();
   }
@@ -282,95 +274,6 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
         !(rules.keeps_object_views &&
           IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
       map.CullKeyframe(candidate.keyframe);
-      ++culled;
-    }
-  }
-  return culled;
-}
-
-namespace {
-
-constexpr int kStrongEdge = 50;  // shared landmarks; two places that share fewer may drift apart
-constexpr size_t kMostJudged = 32;
-constexpr size_t kSteps = 64;  // of the hand, and judgements, per keyframe
-
-// Whether its strong neighbours, those of the strongest edge at least, are not connected by strong
-// edges near the keyframe without it.
-bool ConnectsPlaces(const Map& map, KeyframeId id) {
-  const std::vector<Covisible>& covisible = map.keyframes().At(id).covisible;
-  const auto strongest = std::ranges::max_element(covisible, {}, &Covisible::shared);
-  if (strongest == covisible.end()) {
-    return true;
-  }
-  const int least = std::min(kStrongEdge, strongest->shared);
-  const IdSet<KeyframeId> near = NearKeyframes(map, id);
-  IdSet<KeyframeId> reached;
-  reached.Insert(id);
-  reached.Insert(strongest->keyframe);
-  std::vector<KeyframeId> waiting = {strongest->keyframe};
-  while (!waiting.empty()) {
-    const KeyframeId next = waiting.back();
-    waiting.pop_back();
-    for (const Covisible& edge : map.keyframes().At(next).covisible) {
-      if (edge.shared >= least && near.Contains(edge.keyframe) &&
-          !reached.Contains(edge.keyframe)) {
-        reached.Insert(edge.keyframe);
-        waiting.push_back(edge.keyframe);
-      }
-    }
-  }
-  return std::ranges::any_of(covisible, [&](const Covisible& edge) {
-    return edge.shared >= least && !reached.Contains(edge.keyframe);
-  });
-}
-
-// How redundant a keyframe is, from -1 to 1. Absent if it has to stay.
-std::optional<double> JudgeForBound(const Map& map, KeyframeId id, KeyframeId current,
-                                    const Sensor& sensor, size_t min_object_views) {
-  const Keyframe* const keyframe = map.keyframes().Find(id);
-  const auto has_few_views = [&](ObjectId object) {
-    return object.IsValid() && map.objects().At(object).observations.size() <= min_object_views;
-  };
-  if (keyframe == nullptr || !keyframe->parent.IsValid() ||
-      AgeOf(map, id, current, kYoungKeyframes + 1) <= kYoungKeyframes ||
-      std::ranges::any_of(keyframe->objects, has_few_views) || ConnectsPlaces(map, id)) {
-    return std::nullopt;
-  }
-  Redundancy close;
-  Redundancy all;
-  CountRedundancy(map, id, sensor, CullingRules::ForSensor(sensor.kind), close, all);
-  return all.Share() - (IsNeededByAnObject(map, id, min_object_views) ? 1.0 : 0.0);
-}
-
-}  // namespace
-
-int KeyframeBound::Enforce(Map& map, KeyframeId current, const Sensor& sensor,
-                           size_t min_object_views, size_t most) {
-  const auto judge = [&](KeyframeId id) {
-    return JudgeForBound(map, id, current, sensor, min_object_views);
-  };
-  int culled = 0;
-  for (size_t step = 0; step < kSteps && map.keyframes().size() > most; ++step) {
-    for (size_t i = 0; i < kSteps && judged_.size() < kMostJudged; ++i) {
-      hand_ = map.keyframes().After(hand_);
-      hand_ = hand_.IsValid() ? hand_ : KeyframeId(0);
-      const bool is_listed = std::ranges::find(judged_, hand_, &Judged::keyframe) != judged_.end();
-      if (const std::optional<double> redundancy = is_listed ? std::nullopt : judge(hand_)) {
-        judged_.push_back({hand_, *redundancy});
-      }
-    }
-    if (judged_.empty()) {
-      break;
-    }
-    std::ranges::sort(judged_, {},
-                      [](const Judged& a) { return std::pair(a.redundancy, a.keyframe); });
-    const KeyframeId best = judged_.back().keyframe;
-    judged_.pop_back();
-    const std::optional<double> now = judge(best);
-    if (now && !judged_.empty() && *now < judged_.back().redundancy) {
-      judged_.push_back({best, *now});
-    } else if (now) {
-      map.CullKeyframe(best);
       ++culled;
     }
   }

@@ -46,31 +46,6 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
                   MappingRule rule = MappingRule::kHullslam);
 
-// Keeps the number of keyframes within a bound (mapping.max_keyframes). The keyframes with the
-// largest share of landmarks that enough others see too go first (CullingRules::other_observers),
-// and before those that show an object from a direction of their own. Some stay even if the bound
-// is exceeded: the root, the current one and the 20 before it, those that an object needs to have
-// `min_object_views` views, and those that connect places, that is, without which the keyframes
-// that share most with them would not be connected with each other.
-//
-// Few keyframes are judged at a time: a hand goes round through all of them and keeps the share of
-// some in a list. A share is computed again before the keyframe is removed.
-class KeyframeBound {
- public:
-  // Removes keyframes until at most `most` are left, or none of those that were judged may go. To
-  // be called once per keyframe. Returns how many were removed.
-  int Enforce(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
-              size_t most);
-
- private:
-  struct Judged {
-    KeyframeId keyframe;
-    double redundancy = 0.0;  // the larger, the sooner it goes
-  };
-  std::vector<Judged> judged_;
-  KeyframeId hand_ = KeyframeId(0);
-};
-
 // Compacts keyframes that are old, so that later steps hardly need all of their keypoints
 // (map/compaction.h). These are the keyframes that are more than 20 keyframes older than `current`
 // and are covisible neither with `current` nor with a keyframe that is covisible with it. `full`

@@ -15,9 +15,6 @@ struct MappingOptions {
   // landmarks.
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
-  // Largest number of keyframes in the map; 0: no bound. The most redundant ones are removed
-  // (src/mapping/culling.h).
-  int max_keyframes = 0;
   MappingRule culling_rule = MappingRule::kHullslam;  // of keyframes
   MappingRule landmark_rule = MappingRule::kHullslam;
   bool final_bundle_adjustment = true;  // adjusts the whole map at the end of the run
