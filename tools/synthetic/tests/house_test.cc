@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kFrame = 1.0 / 30.0;  // seconds
 
 // The distance of two poses (m) plus the angle between them (rad).
-double Difference(const Rigid3& a, const Rigid3& b) {
+double UnlikenessOf(const Rigid3& a, const Rigid3& b) {
   return (a.translation - b.translation).norm() + AngularDistance(a.rotation, b.rotation);
 }
 
@@ -59,7 +59,7 @@ TEST(HousePath, SeesTheStartAgainForFortyFrames) {
   for (double time = path.duration() - 3.0; time <= path.duration(); time += kFrame) {
     double nearest = 10.0;
     for (double start = 0.0; start < 3.0; start += kFrame) {
-      nearest = std::min(nearest, Difference(path.WorldFromCam(start), path.WorldFromCam(time)));
+      nearest = std::min(nearest, UnlikenessOf(path.WorldFromCam(start), path.WorldFromCam(time)));
     }
     similar += nearest < 0.1 ? 1 : 0;
   }
@@ -71,7 +71,8 @@ TEST(HousePath, LooksAlongTheCorridorTwice) {
   double nearest = 10.0;
   for (double first = 5.0; first < 15.0; first += kFrame) {
     for (double second = 45.0; second < path.duration() - 5.0; second += kFrame) {
-      nearest = std::min(nearest, Difference(path.WorldFromCam(first), path.WorldFromCam(second)));
+      nearest =
+          std::min(nearest, UnlikenessOf(path.WorldFromCam(first), path.WorldFromCam(second)));
     }
   }
   EXPECT_LT(nearest, 0.6);
