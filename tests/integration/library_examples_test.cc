@@ -3,6 +3,7 @@
 // them.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -118,6 +119,25 @@ TEST_F(LibraryExamples, TheSecondHalfIsFoundInTheMapOfTheFirst) {
       LinesOf("06_localisation", {Desk(), folder_.path() / "desk.map"});
   EXPECT_TRUE(lines.back().starts_with("30 of 30 frames found in a map of ")) << lines.back();
   EXPECT_EQ(lines.size(), 31U);
+}
+
+// With the true poses as those of the wheels. The odometry has then no drift to speak of.
+TEST_F(LibraryExamples, ARobotCrossesACoveredLens) {
+  const std::filesystem::path map = folder_.path() / "desk.map";
+  const std::vector<std::string> lines =
+      LinesOf("07_robot", {Desk(), Desk() + "/groundtruth.txt", map});
+  ASSERT_GE(lines.size(), 3U);
+  EXPECT_EQ(lines[lines.size() - 3], "10 frames by wheels alone");
+  Eigen::Vector3d odometry;
+  ASSERT_EQ(std::sscanf(lines[lines.size() - 2].c_str(), "odometry: %lf %lf %lf m", &odometry.x(),
+                        &odometry.y(), &odometry.z()),
+            3);
+  Eigen::Vector3d in_map;
+  ASSERT_EQ(std::sscanf(lines.back().c_str(), "map: %lf %lf %lf m", &in_map.x(), &in_map.y(),
+                        &in_map.z()),
+            3);
+  EXPECT_LT((odometry - in_map).norm(), 0.05);
+  EXPECT_TRUE(std::filesystem::exists(map));
 }
 
 TEST_F(LibraryExamples, BadUsageAndInputAreRefused) {

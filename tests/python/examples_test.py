@@ -26,7 +26,7 @@ def assert_same(name, *arguments):
 
 def test_all_examples_are_short_and_have_a_twin():
     names = [path.stem for path in EXAMPLES]
-    assert [name[:3] for name in names] == ["01_", "02_", "03_", "04_", "05_", "06_"]
+    assert [name[:3] for name in names] == ["01_", "02_", "03_", "04_", "05_", "06_", "07_"]
     assert names == sorted(path.stem for path in LIBRARY.glob("*.cc"))
     for path in LIBRARY.iterdir():
         assert len(path.read_text(encoding="utf-8").splitlines()) < 80, path
@@ -63,6 +63,10 @@ def test_known_poses(desk):
 
 def test_localisation(desk, tmp_path):
     assert_same("06_localisation", desk, tmp_path / "desk.map")
+
+
+def test_robot(desk, tmp_path):
+    assert_same("07_robot", desk, desk / "groundtruth.txt", tmp_path / "desk.map")
 
 
 @pytest.mark.parametrize("example", EXAMPLES[1:], ids=lambda path: path.stem)
