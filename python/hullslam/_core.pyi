@@ -443,6 +443,7 @@ class TrackResult:
     @property
     def events(self) -> list[MapEvent]:
         """What has happened since the frame before: list of MapEvent."""
+    @property
     def covariance(self) -> _Doubles | None:
         """(6, 6) of the error of the pose (rotation in rad, translation), in
         the axes of the camera, with the drift of the map; or None.
