@@ -191,6 +191,8 @@ std::vector<double> StampsOf(std::span<const FramePaths> frames) {
   return stamps;
 }
 
+constexpr double kMaxOdometryGap = 0.5;  // s
+
 void ReadOdometry(const std::filesystem::path& path, SensorKind sensor, ImageSequence& sequence) {
   if (path.empty()) {
     return;
@@ -201,7 +203,21 @@ void ReadOdometry(const std::filesystem::path& path, SensorKind sensor, ImageSeq
         ": the odometry is in metres, expected a camera with depth or a stereo camera, "
         "because the map of a monocular run is not");
   }
-  sequence.odometry = AsLoaded(sequence, ReadTrajectory(path));
+  const Trajectory& odometry = sequence.odometry.emplace(AsLoaded(sequence, ReadTrajectory(path)));
+  const std::vector<double> stamps = StampsOf(sequence.frames);
+  const auto covered = std::ranges::count_if(stamps, [&](double stamp) {
+    return InterpolatePose(odometry, stamp, kMaxOdometryGap).has_value();
+  });
+  if (!stamps.empty() && covered == 0) {
+    throw InputError(fmt::format(
+        "{}: its stamps go from {:.3f} to {:.3f} s, expected those of the images, {:.3f} to {:.3f}",
+        path.string(), odometry.front().timestamp, odometry.back().timestamp, stamps.front(),
+        stamps.back()));
+  }
+  if (const size_t missing = stamps.size() - static_cast<size_t>(covered); missing > 0) {
+    sequence.warnings.push_back(
+        fmt::format("{}: {} of {} images have no odometry", path.string(), missing, stamps.size()));
+  }
 }
 
 std::optional<MotionPrior> PriorBetween(const ImageSequence& sequence, double from, double to,
@@ -209,10 +225,11 @@ std::optional<MotionPrior> PriorBetween(const ImageSequence& sequence, double fr
   if (!sequence.odometry) {
     return std::nullopt;
   }
-  constexpr double kMaxGap = 0.5;  // s
   constexpr double kLeast = 1e-4;  // rad and m
-  const std::optional<Rigid3> world_from_last = InterpolatePose(*sequence.odometry, from, kMaxGap);
-  const std::optional<Rigid3> world_from_cam = InterpolatePose(*sequence.odometry, to, kMaxGap);
+  const std::optional<Rigid3> world_from_last =
+      InterpolatePose(*sequence.odometry, from, kMaxOdometryGap);
+  const std::optional<Rigid3> world_from_cam =
+      InterpolatePose(*sequence.odometry, to, kMaxOdometryGap);
   if (!world_from_last || !world_from_cam) {
     return std::nullopt;
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/results/trajectory_file.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -148,6 +149,22 @@ TEST(ParseFrameRange, AMissingNumberIsAnEndOfTheSequence) {
     ExpectInputError([&] { ParseFrameRange("--frames", text, 10); },
                      {"--frames: '" + std::string(text) + "', expected FIRST:LAST"});
   }
+}
+
+TEST(ReadOdometry, StampsMustBeThoseOfTheImages) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wheels.txt";
+  WriteTrajectory(file, {{10.0, Rigid3()}, {10.1, Rigid3()}});
+  ImageSequence sequence;
+  sequence.frames = {{9.5, {}, {}}, {10.05, {}, {}}};
+  ReadOdometry(file, SensorKind::kRgbd, sequence);
+  ASSERT_EQ(sequence.warnings.size(), 1U);
+  EXPECT_TRUE(sequence.warnings[0].ends_with("1 of 2 images have no odometry"));
+  sequence.frames.pop_back();
+  ExpectInputError([&] { ReadOdometry(file, SensorKind::kRgbd, sequence); },
+                   {"wheels.txt: its stamps go from 10.000 to 10.100 s, expected those of the "
+                    "images, 9.500 to 9.500"});
+  ExpectInputError([&] { ReadOdometry(file, SensorKind::kMonocular, sequence); }, {"in metres"});
 }
 
 TEST(ImageSequence, GivesTheMotionBetweenTwoStamps) {

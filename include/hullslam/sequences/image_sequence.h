@@ -131,8 +131,9 @@ std::optional<Trajectory> TryGroundtruth(const ImageSequence& sequence,
                                          std::vector<std::string>& warnings);
 
 // Reads the odometry of the camera as read, in TUM's format; none if `path` is empty. Throws
-// InputError for a bad file, and for a monocular camera, because odometry is in metres and its map
-// is not.
+// InputError for a bad file, for one without a pose at any image (in gaps of up to 0.5 s, poses are
+// interpolated), and for a monocular camera, because odometry is in metres and its map is not. Adds
+// a warning if some images have no odometry.
 void ReadOdometry(const std::filesystem::path& path, SensorKind sensor, ImageSequence& sequence);
 
 // The motion between two stamps (s) by the odometry of the sequence. The standard deviations are at
