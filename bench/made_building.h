@@ -83,7 +83,8 @@ class MadeBuilding {
     const std::vector<Seen> seen = Look(time, cam_from_world);
     frame->depth = MakeGrid(cam_from_world, seen);
     AddPoints(time, cam_from_world, seen, random, frame->features);
-    AddClutter(random, frame->features);
+    constexpr int kClutter = 60;
+    AddClutter(kClutter, sensor_, random, frame->features);
     const PinholeCamera::Bounds& bounds = sensor_.bounds;
     frame->features.grid = FeatureGrid(frame->features.keypoints,
                                        Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
@@ -331,28 +332,6 @@ class MadeBuilding {
     const Eigen::Vector2d error(scale * noise(random), scale * noise(random));
     AddKeypoint(pixel + error, in_cam.z() * (1.0 + 2e-3 * noise(random)), level, point.angle,
                 descriptor, features);
-  }
-
-  static void AddKeypoint(const Eigen::Vector2d& pixel, double depth, int level, float angle,
-                          const Descriptor& descriptor, FrameFeatures& features) {
-    Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.undistorted = pixel.cast<float>();
-    keypoint.angle = angle;
-    keypoint.level = level;
-    features.descriptors.push_back(descriptor);
-    features.depth.push_back(static_cast<float>(depth));
-  }
-
-  void AddClutter(std::mt19937_64& random, FrameFeatures& features) const {
-    constexpr int kClutter = 60;
-    std::uniform_real_distribution<double> share(0.02, 0.98);
-    for (int i = 0; i < kClutter; ++i) {
-      const Eigen::Vector2d pixel(sensor_.bounds.max_x * share(random),
-                                  sensor_.bounds.max_y * share(random));
-      AddKeypoint(pixel, 2.0 + share(random), static_cast<int>(random() % 8),
-                  static_cast<float>(6.2 * share(random)), {random(), random(), random(), random()},
-                  features);
-    }
   }
 
   // A point on the side of an object that faces the middle of the ring.

@@ -19,6 +19,29 @@
 
 namespace hullslam {
 
+inline void AddKeypoint(const Eigen::Vector2d& pixel, double depth, int level, float angle,
+                        const Descriptor& descriptor, FrameFeatures& features) {
+  Keypoint& keypoint = features.keypoints.emplace_back();
+  keypoint.undistorted = pixel.cast<float>();
+  keypoint.angle = angle;
+  keypoint.level = level;
+  features.descriptors.push_back(descriptor);
+  features.depth.push_back(static_cast<float>(depth));
+}
+
+// Adds keypoints that are those of no point.
+inline void AddClutter(int count, const Sensor& sensor, std::mt19937_64& random,
+                       FrameFeatures& features) {
+  std::uniform_real_distribution<double> share(0.02, 0.98);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d pixel(sensor.bounds.max_x * share(random),
+                                sensor.bounds.max_y * share(random));
+    AddKeypoint(pixel, 2.0 + share(random), static_cast<int>(random() % 8),
+                static_cast<float>(6.2 * share(random)), {random(), random(), random(), random()},
+                features);
+  }
+}
+
 // A long wall of points with objects in front of it, and the frames of a camera that walks along it
 // at 1.2 m/s, looks at it, and turns back at the ends. Frames are made without images. Every frame
 // also has keypoints that no other frame sees, so that landmarks are made and soon removed, as in
@@ -62,7 +85,7 @@ class MadeCorridor {
     frame->id = FrameId(number);
     frame->timestamp = number / sensor_.frames_per_second;
     AddPoints(cam_from_world, random, frame->features);
-    AddClutter(random, frame->features);
+    AddClutter(kClutter, sensor_, random, frame->features);
     frame->features.keypoints.shrink_to_fit();
     frame->features.descriptors.shrink_to_fit();
     frame->features.depth.shrink_to_fit();
@@ -159,27 +182,6 @@ class MadeCorridor {
                     descriptor, features);
       }
     }
-  }
-
-  void AddClutter(std::mt19937_64& random, FrameFeatures& features) const {
-    std::uniform_real_distribution<double> share(0.02, 0.98);
-    for (int i = 0; i < kClutter; ++i) {
-      const Eigen::Vector2d pixel(sensor_.bounds.max_x * share(random),
-                                  sensor_.bounds.max_y * share(random));
-      AddKeypoint(pixel, 2.0 + share(random), static_cast<int>(random() % 8),
-                  static_cast<float>(6.2 * share(random)), {random(), random(), random(), random()},
-                  features);
-    }
-  }
-
-  void AddKeypoint(const Eigen::Vector2d& pixel, double depth, int level, float angle,
-                   const Descriptor& descriptor, FrameFeatures& features) const {
-    Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.undistorted = pixel.cast<float>();
-    keypoint.angle = angle;
-    keypoint.level = level;
-    features.descriptors.push_back(descriptor);
-    features.depth.push_back(static_cast<float>(depth));
   }
 
   void AddDetections(const Rigid3& cam_from_world, std::mt19937_64& random, Frame& frame) const {

@@ -140,13 +140,11 @@ BuiltFrame FrameBuilder::BuildFitted(const ImageInput& image, TaskRunner& runner
   DetectionInput input;
   input.keypoints = AddFeatures(image, runner, built.frame->features);
   if (vocabulary_ != nullptr && built.frame->features.size() > 0) {
-    built.frame->words =
-        FrameWords([vocabulary = vocabulary_, descriptors = built.frame->features.descriptors] {
-          return vocabulary->WordsOf(descriptors);
-        });
-    if (finds_words) {
-      built.frame->words.get();
-    }
+    const std::vector<Descriptor>& descriptors = built.frame->features.descriptors;
+    built.frame->words = finds_words ? FrameWords(vocabulary_->WordsOf(descriptors))
+                                     : FrameWords([vocabulary = vocabulary_, descriptors] {
+                                         return vocabulary->WordsOf(descriptors);
+                                       });
   }
   built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
   const bool is_awaiting = awaits_masks && detector_ && image.masks.empty();

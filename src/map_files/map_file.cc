@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <exception>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -243,7 +244,7 @@ MapSaver::MapSaver(const fs::path& path, const MapSettings& settings, double sec
           [path, settings, on_failure = std::move(on_failure)](std::shared_ptr<const Map> map) {
             try {
               WriteMap(path, *map, settings);
-            } catch (const InputError& error) {
+            } catch (const std::exception& error) {  // the run goes on
               on_failure(error.what());
             }
           })) {}

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
@@ -387,7 +388,7 @@ void System::Finish(const Cancellation* cancellation, const ProgressCallback& on
     left_islands_ = std::move(left);
   }
   remembered_.clear();
-  events_at_end_ = TakeEvents();
+  std::ranges::move(TakeEvents(), std::back_inserter(events_at_end_));
 }
 
 void System::Reset() {

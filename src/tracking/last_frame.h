@@ -12,7 +12,6 @@
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/messages.h"
 
 namespace hullslam {
 
@@ -68,29 +67,14 @@ LastFrame FollowMap(const Map& map, LastFrame last);
 std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
                                         const Rigid3& cam_from_world);
 
+// The longest time for which a motion predicts the next one, over its own duration.
+inline constexpr double kMaxExtrapolation = 4.0;
+
 // The motion from the last frame to a frame at `timestamp` (s): last.ahead if it is known, else
 // that of a camera that keeps its velocity. Null if the velocity is not known, or if the time step
 // is much longer than the one over which the velocity was measured: then the velocity may have
 // changed.
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp);
-
-// Composes the odometry of a run (Odometry).
-class OdometryChain {
- public:
-  // The odometry of the next frame; absent before the first tracked one. last.motion is the motion
-  // to it if it was measured, `prior` that of the frame, and `corrections` Map::correction_count()
-  // of the map that it was tracked in.
-  std::optional<Odometry> Add(const TrackedFrame& tracked, const LastFrame& last,
-                              const std::optional<MotionPrior>& prior, uint32_t corrections);
-
- private:
-  std::optional<Odometry> odometry_;  // of the last frame
-  double timestamp_ = 0.0;            // s, of the last frame
-  uint32_t corrections_ = 0;
-  // The last measured motion, in the unit of the odometry, and the time until which it predicts.
-  CameraMotion motion_;
-  double end_of_prediction_ = 0.0;  // s
-};
 
 // The share of the landmarks that a camera at `cam_from_world` has in its image. Ids that are
 // invalid or that the map does not have are left out; 1 if none remains.

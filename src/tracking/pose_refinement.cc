@@ -19,34 +19,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 // freedom.
 constexpr double kMostPriorError = 22.458;
 
-// The frame of a keyframe that the map has or has culled; invalid if it has forgotten it.
-FrameId FrameOf(const Map& map, KeyframeId id) {
-  if (const Keyframe* const keyframe = map.keyframes().Find(id)) {
-    return keyframe->frame->id;
-  }
-  const CulledKeyframe* const culled = map.FindCulled(id);
-  return culled != nullptr ? culled->frame : FrameId();
-}
-
 }  // namespace
-
-Matrix6d DriftModel::Covariance(const Map& map, const PoseEstimate& estimate) const {
-  IdMap<KeyframeId, int> created;
-  int all = 0;
-  for (const LandmarkId id : estimate.landmarks) {
-    if (id.IsValid()) {
-      ++created[map.landmarks().At(id).created_by];
-      ++all;
-    }
-  }
-  Matrix6d drift = Matrix6d::Zero();
-  for (const auto& [keyframe, count] : created.entries()) {
-    if (const Drift* const of_keyframe = drifts_.Find(FrameOf(map, keyframe))) {
-      drift += static_cast<double>(count) / all * of_keyframe->covariance;
-    }
-  }
-  return estimate.information.inverse() + InAxesOf(estimate.cam_from_world, drift);
-}
 
 bool FusePrior(const Rigid3& expected, const Matrix6d& covariance, PoseEstimate& estimate) {
   const Matrix6d prior_information = covariance.inverse();
@@ -59,10 +32,6 @@ bool FusePrior(const Rigid3& expected, const Matrix6d& covariance, PoseEstimate&
   estimate.cam_from_world =
       Retract(estimate.cam_from_world, estimate.information.llt().solve(prior_information * step));
   return true;
-}
-
-void DriftModel::Add(FrameId keyframe, const Rigid3& cam_from_world, const Matrix6d& covariance) {
-  drifts_[keyframe].covariance = InAxesOf(Inverse(cam_from_world), covariance);
 }
 
 PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContext& context,

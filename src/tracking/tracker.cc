@@ -9,6 +9,7 @@
 
 #include "frame/measure_point.h"
 #include "map/islands.h"
+#include "tracking/keyframe_evidence.h"
 
 namespace hullslam {
 namespace {
@@ -44,53 +45,6 @@ InitialMap MakeInitialMap(std::shared_ptr<const Frame> frame, const PinholeCamer
   }
   initial.views.push_back({.frame = std::move(frame), .cam_from_world = Rigid3()});
   return initial;
-}
-
-int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
-                        const std::vector<LandmarkId>& landmarks, bool tracked) {
-  int count = 0;
-  for (size_t i = 0; i < landmarks.size(); ++i) {
-    const double depth = static_cast<double>(frame.features.depth[i]);
-    const bool is_close = depth > 0.0 && depth < sensor.close_depth;
-    count += is_close && landmarks[i].IsValid() == tracked ? 1 : 0;
-  }
-  return count;
-}
-
-// The number of those of the landmarks that have a sufficient observation weight. They are in the
-// island of the keyframe `reference`.
-int CountConfirmedLandmarks(const Map& map, KeyframeId reference,
-                            std::span<const LandmarkId> landmarks) {
-  const int min_weight = map.IslandSize(IslandOf(map, reference)) <= 2 ? 2 : 3;
-  return static_cast<int>(std::count_if(landmarks.begin(), landmarks.end(), [&](LandmarkId id) {
-    return id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight;
-  }));
-}
-
-// The number of landmarks of the estimate that have a sufficient observation weight, with those
-// that its objects stand for.
-int CountConfirmed(const Map& map, KeyframeId reference, const PoseEstimate& estimate) {
-  return CountConfirmedLandmarks(map, reference, estimate.landmarks) + estimate.EffectiveInliers() -
-         estimate.inliers;
-}
-
-KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor& sensor,
-                                const LocalTracking& tracking, const LastFrame& last,
-                                double last_request_time, const MapperStatus& mapper) {
-  const PoseEstimate& estimate = tracking.estimate;
-  return {
-      .time_since_keyframe = frame.timestamp - last_request_time,
-      .inliers = estimate.inliers,
-      .confirmed_inliers = CountConfirmed(map, tracking.reference, estimate),
-      .reference_landmarks = CountConfirmedLandmarks(
-          map, tracking.reference, map.keyframes().At(tracking.reference).landmarks),
-      .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
-      .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
-      .unknown_objects = tracking.unknown_objects,
-      .next_overlap = NextOverlap(map, sensor, estimate.cam_from_world, tracking.reference, last),
-      .keyframes = map.IslandSize(IslandOf(map, tracking.reference)),
-      .mapper_is_idle = mapper.is_idle,
-      .requests_waiting = mapper.requests_waiting};
 }
 
 // The result for a frame without a pose or for a frame of the initial map.
@@ -435,8 +389,10 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
                             const MapperStatus& mapper) {
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
   const int lasting_changes = lasting_changes_.Follow(frame, map, Context(), tracking);
-  KeyframeEvidence evidence =
-      GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
+  KeyframeEvidence evidence = GatherEvidence(frame, map, sensor_, tracking, last_);
+  evidence.time_since_keyframe = frame.timestamp - *last_request_time_;
+  evidence.mapper_is_idle = mapper.is_idle;
+  evidence.requests_waiting = mapper.requests_waiting;
   evidence.has_islands =
       Islands(map).size() > 1 &&
       join_requests_.MayAskAgain(map, sensor_, tracking.reference, tracking.estimate);

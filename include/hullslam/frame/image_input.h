@@ -16,11 +16,12 @@ enum class ImageSide { kLeft, kRight };
 
 // The motion of the camera from the frame before, as wheels or an inertial sensor measure it.
 struct MotionPrior {
-  Rigid3 cam_from_last_cam;     // m; maps points of the camera frame of then to that of now
+  // m; maps points from the camera frame of the frame before to that of this frame.
+  Rigid3 cam_from_last_cam;
   double last_timestamp = 0.0;  // s, of the frame before
   // The covariance of the small motion d by which it is wrong: the true motion is
   // Retract(cam_from_last_cam, d), d = (rotation in rad, translation in m) in the axes of the
-  // camera of now. Symmetric and positive definite.
+  // camera at this frame. Symmetric and positive definite.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
 };
 

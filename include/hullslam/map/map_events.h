@@ -12,8 +12,8 @@ namespace hullslam {
 enum class MapEventKind {
   kLost,          // the camera was tracked in the frame before
   kRelocalised,   // it was lost, and is tracked again
-  kIslandBegun,   // a part of the map that has no known pose relative to the others
-  kIslandJoined,  // to another one
+  kIslandBegun,   // a part of the map that has no known pose relative to the others was begun
+  kIslandJoined,  // such a part was joined to another one
   kLoopClosed,
   kRescaled,     // lengths have another unit than before, and nothing else has changed
   kAdjusted,     // all poses were computed again, as after a loop
@@ -32,10 +32,10 @@ struct MapEvent {
   ObjectId object = {};
   ObjectId kept = {};
   // Loops, joins, scales and adjustments: the mean and the largest distance by which keyframes have
-  // moved, m. A moved object: the distance of its old centre from its new one, twice.
+  // moved, m. Both are the distance by which the centre has moved if it is an object that has.
   double mean_moved = 0.0;
   double most_moved = 0.0;
-  // By this factor lengths in the map have grown, the median of all keyframes.
+  // The factor by which lengths in the map have grown: the median of all keyframes.
   double scale = 1.0;
 };
 
