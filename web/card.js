@@ -28,7 +28,7 @@ export function sizeText(object, unit) {
 export function freeText({ body }) {
   const axes = (key) => ((body && body[key]) || []).join(', ');
   return [axes('round_axes') && `round about ${axes('round_axes')}`,
-    axes('unseen_axes') && `length of ${axes('unseen_axes')}`].filter((text) => text).join('; ');
+    axes('undetermined_axes') && `length of ${axes('undetermined_axes')}`].filter((text) => text).join('; ');
 }
 
 export class Card {

@@ -61,7 +61,7 @@ SceneJson AxesJson(const SceneObject& object, bool FreeAxis::*property) {
 nlohmann::ordered_json BodyJson(const SceneObject& object) {
   return {{"box", BoxJson(object.box)},
           {"round_axes", AxesJson(object, &FreeAxis::is_round)},
-          {"unseen_axes", AxesJson(object, &FreeAxis::is_unseen)}};
+          {"undetermined_axes", AxesJson(object, &FreeAxis::is_undetermined)}};
 }
 
 namespace {

@@ -13,7 +13,8 @@ namespace hullslam {
 // The version of the format of scene.json.
 inline constexpr uint32_t kSceneFileVersion = 1;
 
-// The members `box`, `round_axes` and `unseen_axes` of an object, which objects.json has, too.
+// The members `box`, `round_axes` and `undetermined_axes` of an object, which objects.json has,
+// too.
 nlohmann::ordered_json BodyJson(const SceneObject& object);
 
 // The text of `scene.json` (docs/scene.md). The same scene gives the same bytes. Throws CheckError

@@ -100,7 +100,7 @@ SceneObject ReadSceneObject(const JsonNode& node) {
     object.covariance = ShapeCovariance{ReadCovariance(node.At("centre_covariance")),
                                         ReadCovariance(node.At("axes_covariance"))};
     ReadAxes(node, "round_axes", &FreeAxis::is_round, *object.covariance);
-    ReadAxes(node, "unseen_axes", &FreeAxis::is_unseen, *object.covariance);
+    ReadAxes(node, "undetermined_axes", &FreeAxis::is_undetermined, *object.covariance);
   }
   object.observations = node.At("times_seen").Count();
   object.first_seen = node.At("first_seen").Number(kMostSeconds);

@@ -94,9 +94,10 @@ Scene MakeScene(const Map& map, const ObjectResults& report, const UpDirection& 
       const std::vector<SupportPlane> planes =
           SupportPlanesOf(report.camera, object.ellipsoid, observations, upright_from_world);
       object.box = FitBox(planes, bodies.back().ellipsoid);
-      if (object.box) {  // a thing whose lines are those of a box is not round
-        for (size_t i = 0; object.covariance && i < object.covariance->axes.size(); ++i) {
-          object.covariance->axes[i].is_round = false;
+      if (object.box) {
+        // The covariance is that of an ellipsoid, which the thing is not; the box has its sides.
+        if (object.covariance) {
+          object.covariance->axes = {};
         }
         object.box->world_from_box = world_from_upright * object.box->world_from_box;
       } else {

@@ -29,8 +29,8 @@ struct UprightBox {
 
 // What the masks leave free at an axis of an ellipsoid (shape_covariance.h).
 struct FreeAxis {
-  bool is_round = false;   // turning about it changes nothing
-  bool is_unseen = false;  // the length of its half axis is not determined
+  bool is_round = false;         // turning about it changes nothing
+  bool is_undetermined = false;  // the length of its half axis is not determined
 };
 
 // How well the shape of an object is known.

@@ -222,7 +222,7 @@ std::array<FreeAxis, 3> FindFreeAxes(const Ellipsoid& ellipsoid, const Gradient&
     const double b = ellipsoid.half_axes[(i + 2) % 3];
     axes.at(static_cast<size_t>(i)) = {
         .is_round = std::max(a, b) <= kEqual * std::min(a, b) && is_free(3 + i, kMostTurn),
-        .is_unseen = is_free(6 + i, kMostLength)};
+        .is_undetermined = is_free(6 + i, kMostLength)};
   }
   return axes;
 }

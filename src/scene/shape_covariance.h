@@ -38,9 +38,10 @@ namespace hullslam {
 //
 // An axis is round if the turn about it has a sigma of more than 26 degrees, which a turn has that
 // is anywhere in a quarter of a circle (90 / sqrt(12)), and the two half axes across differ by at
-// most a fifth, so that a turn moves no line by more than a tenth of them. It is unseen if its half
-// axis has a sigma of more than a quarter of it, so that twice the size is within four sigmas. A
-// parameter is also free if the prior tells more of it than all lines: (H^-1)_ii P_ii > 1/2.
+// most a fifth, so that a turn moves no line by more than a tenth of them. It is undetermined if
+// its half axis has a sigma of more than a quarter of it, so that twice the size is within four
+// sigmas. A parameter is also free if the prior tells more of it than all lines: (H^-1)_ii P_ii >
+// 1/2.
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
                                             std::span<const ResolvedObservation> observations);

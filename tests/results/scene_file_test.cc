@@ -25,7 +25,7 @@ Scene MakeFileScene() {
       ShapeCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-6 * Eigen::Matrix3d::Identity()};
   scene.objects[0].box->is_seen = {true, true, false, true, false, true};
   scene.objects[0].covariance->axes[2].is_round = true;
-  scene.objects[0].covariance->axes[0].is_unseen = true;
+  scene.objects[0].covariance->axes[0].is_undetermined = true;
   scene.objects[0].observations = 7;
   scene.objects[0].first_seen = 1000.25;
   scene.objects[0].last_seen = 1002.5;
@@ -47,7 +47,7 @@ TEST(SceneFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(cup["box"]["half_extents"], Json({0.05, 0.05, 0.05}));
   EXPECT_EQ(cup["box"]["sides_seen"], Json({true, true, false, true, false, true}));
   EXPECT_EQ(cup["round_axes"], Json::array({"z"}));
-  EXPECT_EQ(cup["unseen_axes"], Json::array({"x"}));
+  EXPECT_EQ(cup["undetermined_axes"], Json::array({"x"}));
   EXPECT_TRUE(json["objects"][1]["round_axes"].is_null());
   EXPECT_EQ(cup["centre_covariance"][0][0], 1e-4);
   EXPECT_EQ(cup["times_seen"], 7);

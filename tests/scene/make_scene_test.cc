@@ -42,7 +42,7 @@ TEST_F(MakeSceneTest, DescribesTheObjects) {
   ASSERT_TRUE(cup.box && cup.covariance);
   EXPECT_NEAR(cup.box->half_extents.z(), 0.06, 0.005);
   EXPECT_TRUE(cup.covariance->axes[2].is_round);
-  EXPECT_FALSE(cup.covariance->axes[0].is_unseen);
+  EXPECT_FALSE(cup.covariance->axes[0].is_undetermined);
   // The cameras look down on it at 27 degrees, so their lines limit its sides and its top.
   EXPECT_EQ(cup.box->is_seen, (std::array{true, true, true, true, true, true}));
 }

@@ -74,7 +74,7 @@ TEST(ShapeCovariance, ARoundThingIsFreeToTurnAboutItsAxis) {
   EXPECT_TRUE(covariance->axes[2].is_round);
   EXPECT_FALSE(covariance->axes[0].is_round || covariance->axes[1].is_round);
   for (const FreeAxis& axis : covariance->axes) {
-    EXPECT_FALSE(axis.is_unseen);
+    EXPECT_FALSE(axis.is_undetermined);
   }
 }
 
@@ -84,10 +84,10 @@ TEST(ShapeCovariance, OneSideDoesNotTellTheLengthAlongTheViews) {
   const auto one_side = NoisyViews(thing, 0.02, 0.5).Covariance(thing);
   const auto around = NoisyViews(thing, 6.0, 0.5).Covariance(thing);
   ASSERT_TRUE(one_side && around);
-  EXPECT_TRUE(one_side->axes[0].is_unseen);
-  EXPECT_FALSE(one_side->axes[1].is_unseen || one_side->axes[2].is_unseen);
+  EXPECT_TRUE(one_side->axes[0].is_undetermined);
+  EXPECT_FALSE(one_side->axes[1].is_undetermined || one_side->axes[2].is_undetermined);
   for (const FreeAxis& axis : around->axes) {
-    EXPECT_FALSE(axis.is_round || axis.is_unseen);
+    EXPECT_FALSE(axis.is_round || axis.is_undetermined);
   }
 }
 
