@@ -5,7 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <queue>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "estimators/similarity.h"
 #include "frame/measure_point.h"
@@ -122,20 +128,57 @@ LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, K
 }
 
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last) {
-  Travel travel;
   const auto [from, to] = std::minmax(first.value, last.value);
-  const IslandId island = IslandOf(map, KeyframeId(from));
-  Rigid3 before = Inverse(map.CamFromWorld(KeyframeId(from)));
-  for (uint32_t i = from + 1; i <= to; ++i) {
-    if (IslandOf(map, KeyframeId(i)) != island) {
+  const IslandId island = IslandOf(map, first);
+  const uint32_t made = std::max(map.keyframes().NextId().value, map.culled().NextId().value);
+  std::vector<uint32_t> in_island;  // in the order in which they were made
+  std::vector<size_t> place(made, SIZE_MAX);
+  for (uint32_t i = 0; i < made; ++i) {
+    if (IslandOf(map, KeyframeId(i)) == island) {
+      place[i] = in_island.size();
+      in_island.push_back(i);
+    }
+  }
+  std::vector<Rigid3> world_from_cam;
+  std::vector<std::optional<Travel>> known(in_island.size());
+  for (const uint32_t id : in_island) {
+    world_from_cam.push_back(Inverse(map.CamFromWorld(KeyframeId(id))));
+  }
+  // Dijkstra's search for the shortest way.
+  using Step = std::tuple<double, size_t, double>;  // length, to which place, radians
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> next;
+  next.emplace(0.0, place.at(from), 0.0);
+  while (!next.empty()) {
+    const auto [length, at, radians] = next.top();
+    next.pop();
+    if (known[at]) {
       continue;
     }
-    const Rigid3 pose = Inverse(map.CamFromWorld(KeyframeId(i)));
-    travel.length += (pose.translation - before.translation).norm();
-    travel.radians += pose.rotation.angularDistance(before.rotation);
-    before = pose;
+    known[at] = Travel{length, radians};
+    if (in_island[at] == to) {
+      break;
+    }
+    const auto go = [&, length = length, at = at, radians = radians](size_t there) {
+      next.emplace(
+          length + (world_from_cam[there].translation - world_from_cam[at].translation).norm(),
+          there,
+          radians + world_from_cam[there].rotation.angularDistance(world_from_cam[at].rotation));
+    };
+    if (at > 0) {
+      go(at - 1);
+    }
+    if (at + 1 < in_island.size()) {
+      go(at + 1);
+    }
+    if (const Keyframe* const keyframe = map.keyframes().Find(KeyframeId(in_island[at]))) {
+      for (const KeyframeId loop : keyframe->loops) {
+        if (place[loop.value] != SIZE_MAX) {
+          go(place[loop.value]);
+        }
+      }
+    }
   }
-  return travel;
+  return known[place.at(to)].value_or(Travel());
 }
 
 double MetreOf(const Map& map, KeyframeId id, const Sensor& sensor) {

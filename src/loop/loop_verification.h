@@ -52,7 +52,9 @@ struct Travel {
   double radians = 0.0;
 };
 
-// The travel along all keyframes, also culled ones, made between two keyframes of one island.
+// The travel between two keyframes of one island along the shortest way: from each keyframe, also a
+// culled one, to the one that was made before or after it, or over a closed loop. A map drifts
+// along this way only: it is no longer wrong by what the camera has drifted before a loop.
 // Keyframes of other islands are skipped.
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last);
 

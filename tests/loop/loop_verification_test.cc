@@ -136,6 +136,15 @@ TEST_F(TravelTest, IsTheLengthAndTurnOfThePathAndNotOfTheShortCut) {
   EXPECT_EQ(none.radians, 0.0);
 }
 
+// In a building that it patrols for hours, a camera would otherwise seem to drift by any amount.
+TEST_F(TravelTest, IsShorterOverAClosedLoop) {
+  const Travel before = Between(3, 20);
+  made_.map.AddLoop(KeyframeId(0), KeyframeId(24));
+  EXPECT_NEAR(Between(3, 20).length, before.length * 7.0 / 17.0, 1e-9);
+  EXPECT_NEAR(Between(3, 20).radians, before.radians * 7.0 / 17.0, 1e-9);
+  EXPECT_NEAR(Between(20, 3).length, before.length * 7.0 / 17.0, 1e-9);
+}
+
 TEST_F(TravelTest, AddsUpAndDoesNotDependOnTheDirection) {
   EXPECT_NEAR(Between(3, 9).length + Between(9, 20).length, Between(3, 20).length, 1e-12);
   EXPECT_NEAR(Between(3, 9).radians + Between(9, 20).radians, Between(3, 20).radians, 1e-12);
