@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "bow/train_vocabulary.h"
 #include "map/keyframe_graph.h"
 #include "map/landmark_edits.h"
+#include "map_files/train_vocabulary.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
 #include "util/task_runner.h"

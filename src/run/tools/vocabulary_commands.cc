@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bow/train_vocabulary.h"
 #include "datasets/training_images.h"
 #include "hullslam/map_files/vocabulary_file.h"
+#include "map_files/train_vocabulary.h"
 #include "run/command_line.h"
 #include "run/program.h"
 #include "run/progress.h"

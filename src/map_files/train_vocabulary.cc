@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bow/train_vocabulary.h"
+#include "map_files/train_vocabulary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "bow/binary_clustering.h"
 #include "bow/vocabulary_builder.h"
 #include "hullslam/util/check.h"
+#include "map_files/binary_clustering.h"
 #include "util/hash.h"
 #include "util/lists.h"
 

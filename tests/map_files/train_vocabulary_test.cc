@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bow/train_vocabulary.h"
+#include "map_files/train_vocabulary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bow/binary_clustering.h"
+#include "map_files/binary_clustering.h"
 
 #include <gtest/gtest.h>
 
