@@ -211,6 +211,7 @@ double PeakMb() {
 struct Shift {
   double hours = 10.0;
   PipelineKind kind = PipelineKind::kSequential;
+  int max_keyframes = 0;
 };
 
 // A robot at work, and what is known about it so far.
@@ -224,9 +225,9 @@ class Patrol {
         system_(Options(), shift.kind) {}
 
   void Run() {
-    fmt::print("{:>5} {:>9} {:>6} {:>9} {:>7} {:>23} {:>16} {:>5} {:>6} {:>5} {:>6} {:>6} {:>5}\n",
+    fmt::print("{:>5} {:>9} {:>6} {:>9} {:>7} {:>23} {:>22} {:>5} {:>6} {:>5} {:>6} {:>6} {:>5}\n",
                "hour", "keyframes", "made", "landmarks", "objects", "frame, ms: median/99%/max",
-               "over 33 ms/lost", "heap", "loops", "false", "ATE, m", "map MB", "s");
+               "over 33 ms/lost/wrong", "heap", "loops", "false", "ATE, m", "map MB", "s");
     const double seconds = 3600.0 * shift_.hours;
     const double step = std::min(3600.0, seconds / 10.0);
     double next = step;
@@ -251,6 +252,7 @@ class Patrol {
     options.vocabulary = vocabulary_;
     // A robot that works on never reaches the end of its run.
     options.tracking.refine_at_end = false;
+    options.mapping.max_keyframes = shift_.max_keyframes;
     return options;
   }
 
@@ -264,23 +266,41 @@ class Patrol {
     over_ += spent > 1e3 / sensor_.frames_per_second ? 1 : 0;
     lost_ += tracked.state == TrackingState::kTracked ? 0 : 1;
     const std::shared_ptr<const Map> map = system_.map();
+    wrong_ += IsWrong(*map, tracked, time) ? 1 : 0;
     if (map->correction_count() != corrections_) {
       corrections_ = map->correction_count();
       CountLoops(*map);
     }
   }
 
-  Eigen::Vector3d TrueCenter(const Frame& frame) const {
-    return Inverse(building_.CamFromWorld(frame.timestamp)).translation;
+  // Whether the camera is elsewhere than in the map, by the alignment of the last line.
+  bool IsWrong(const Map& map, const TrackedFrame& tracked, double time) const {
+    constexpr double kWrong = 0.5;  // m
+    if (map_mb_ == 0.0 || !tracked.from_keyframe ||
+        !map.NearestAlive(tracked.from_keyframe->reference).IsValid()) {
+      return false;
+    }
+    const Rigid3 world_from_cam = Inverse(map.CamFromWorld(*tracked.from_keyframe));
+    const Eigen::Vector3d truth = Inverse(building_.CamFromWorld(time)).translation;
+    return (truth_from_map_ * world_from_cam.translation - truth).norm() > kWrong;
   }
 
+  Rigid3 TruthOf(const Frame& frame) const { return building_.CamFromWorld(frame.timestamp); }
+
+  // A loop is false if its two keyframes cannot see the same part of the wall, or if the map places
+  // them wrongly to each other once it is closed.
   void CountLoops(const Map& map) {
-    constexpr double kFar = 4.0;  // m; what the two see has nothing in common
+    constexpr double kFar = 7.0;    // m: twice the reach, and what the camera turns aside
+    constexpr double kWrong = 0.5;  // m
     for (const auto& [id, keyframe] : map.keyframes()) {
       for (const KeyframeId other : keyframe.loops) {
         if (other < id && loops_.emplace(other, id).second) {
-          const Frame& frame = *map.keyframes().At(other).frame;
-          false_loops_ += (TrueCenter(frame) - TrueCenter(*keyframe.frame)).norm() > kFar ? 1 : 0;
+          const Rigid3 there = TruthOf(*map.keyframes().At(other).frame);
+          const Rigid3 here_from_there = TruthOf(*keyframe.frame) * Inverse(there);
+          const Rigid3 mapped = map.CamFromWorld(id) * Inverse(map.CamFromWorld(other));
+          const bool is_false = here_from_there.translation.norm() > kFar ||
+                                (mapped.translation - here_from_there.translation).norm() > kWrong;
+          false_loops_ += is_false ? 1 : 0;
         }
       }
     }
@@ -325,17 +345,19 @@ class Patrol {
     const double ate = Ate();
     map_mb_ = Save();
     fmt::print(
-        "{:>5.2f} {:>9} {:>6} {:>9} {:>7} {:>11.2f} {:>5.2f} {:>7.1f} {:>9} {:>6} {:>5.1f} {:>6} "
+        "{:>5.2f} {:>9} {:>6} {:>9} {:>7} {:>11.2f} {:>5.2f} {:>7.1f} {:>10} {:>5} {:>5} {:>5.1f} "
+        "{:>6} "
         "{:>5} {:>6.3f} {:>6.1f} {:>5.0f}\n",
         time / 3600.0, map->keyframes().size(), map->keyframes().NextId().value,
         map->landmarks().size(), map->objects().size(), times_[times_.size() / 2],
-        times_[times_.size() * 99 / 100], times_.back(), over_, lost_,
+        times_[times_.size() * 99 / 100], times_.back(), over_, lost_, wrong_,
         1e-6 * static_cast<double>(heap), loops_.size(), false_loops_, ate, map_mb_,
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
     std::fflush(stdout);
     times_.clear();
     over_ = 0;
     lost_ = 0;
+    wrong_ = 0;
   }
 
   // Prints how the mapped objects compare with the true ones, and the memory.
@@ -378,6 +400,7 @@ class Patrol {
   std::vector<double> times_;  // of the frames of this hour, ms
   size_t over_ = 0;
   size_t lost_ = 0;
+  size_t wrong_ = 0;  // frames
   uint32_t corrections_ = 0;
   std::set<std::pair<KeyframeId, KeyframeId>> loops_;
   size_t false_loops_ = 0;
@@ -407,6 +430,8 @@ int main(int argc, char** argv) {
       port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--hours") {
       shift.hours = std::strtod(argv[i + 1], nullptr);
+    } else if (std::string_view(argv[i]) == "--max-keyframes") {
+      shift.max_keyframes = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else {
       frames = 0;
     }
@@ -416,7 +441,7 @@ int main(int argc, char** argv) {
     fmt::print(
         stderr,
         "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
-        "       scale_bench --hours H [--threaded]\n"
+        "       scale_bench --hours H [--max-keyframes N] [--threaded]\n"
         "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
         "frames\n");
     return 2;

@@ -37,6 +37,10 @@ Sight LookAtLandmark(const Sensor& sensor, const Keyframe& keyframe, const Landm
 
 constexpr uint32_t kYoungKeyframes = 20;
 
+constexpr int kMostAtOnce = 2;  // a map far beyond its bound shrinks while it is used
+// Over the bound, half of the landmarks of a keyframe that goes are held by enough others.
+constexpr double kLeastShareOverBound = 0.5;
+
 // The keyframe, those that are covisible with it, and those that are covisible with one of them.
 IdSet<KeyframeId> NearKeyframes(const Map& map, KeyframeId id) {
   IdSet<KeyframeId> near;
@@ -127,7 +131,7 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
   return false;
 }
 
-// The number of landmarks of a keyframe, and of those that enough other keyframes see too.
+// How many landmarks a keyframe has, and how many of them enough other keyframes see too.
 struct Redundancy {
   int landmarks = 0;
   int redundant = 0;
@@ -136,16 +140,20 @@ struct Redundancy {
     ++landmarks;
     redundant += is_redundant ? 1 : 0;
   }
-  bool MostAreRedundant() const {
-    return landmarks == 0 || redundant > kRedundantShare * landmarks;
-  }
+  double Share() const { return redundant / std::max(1.0, landmarks + 0.0); }
+  bool MostAreRedundant() const { return landmarks == 0 || Share() > kRedundantShare; }
 };
 
-bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules) {
+struct Redundancies {
+  Redundancy close;
+  Redundancy all;  // landmarks
+};
+
+Redundancies CountRedundant(const Map& map, KeyframeId id, const Sensor& sensor,
+                            const CullingRules& rules) {
   const Keyframe& keyframe = map.keyframes().At(id);
   const FrameFeatures& features = keyframe.frame->features;
-  Redundancy close;
-  Redundancy all;
+  Redundancies counts;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (!keyframe.landmarks[i].IsValid()) {
       continue;
@@ -154,11 +162,16 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const Cull
     const bool is_redundant =
         IsSeenByOthers(map, landmark, id, features.keypoints[i].level, sensor, rules);
     const double depth = static_cast<double>(features.depth[i]);
-    all.Count(is_redundant);
+    counts.all.Count(is_redundant);
     if (depth > 0.0 && depth <= sensor.close_depth) {
-      close.Count(is_redundant);
+      counts.close.Count(is_redundant);
     }
   }
+  return counts;
+}
+
+bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules) {
+  const auto [close, all] = CountRedundant(map, id, sensor, rules);
   if (rules.only_close_landmarks) {
     return close.landmarks > 0 && close.MostAreRedundant();
   }
@@ -216,14 +229,16 @@ bool IsNewDirection(const Map& map, KeyframeId id, const ObjectLandmark& object)
   });
 }
 
-bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
-  const std::vector<ObjectId>& objects = map.keyframes().At(id).objects;
-  return std::any_of(objects.begin(), objects.end(), [&](ObjectId observed) {
+// Whether an object has few views, or none but this one from a direction if `directions_count`.
+bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views,
+                        bool directions_count = true) {
+  return std::ranges::any_of(map.keyframes().At(id).objects, [&](ObjectId observed) {
     if (!observed.IsValid()) {
       return false;
     }
     const ObjectLandmark& object = map.objects().At(observed);
-    return object.observations.size() <= min_views || IsNewDirection(map, id, object);
+    return object.observations.size() <= min_views ||
+           (directions_count && IsNewDirection(map, id, object));
   });
 }
 
@@ -276,6 +291,34 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
       map.CullKeyframe(candidate.keyframe);
       ++culled;
     }
+  }
+  return culled;
+}
+
+int CullOverBound(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
+                  size_t most) {
+  const CullingRules rules = CullingRules::ForSensor(sensor.kind);
+  int culled = 0;
+  while (culled < kMostAtOnce && map.keyframes().size() > most) {
+    double largest = kLeastShareOverBound;
+    KeyframeId best;
+    for (const auto& [id, keyframe] : map.keyframes()) {
+      if (!keyframe.parent.IsValid() ||
+          AgeOf(map, id, current, kYoungKeyframes + 1) <= kYoungKeyframes) {
+        continue;
+      }
+      const double share = CountRedundant(map, id, sensor, rules).all.Share();
+      if (share > largest && !JoinsItsNeighbours(map, id, rules.min_shared) &&
+          !IsNeededByAnObject(map, id, min_object_views, false)) {
+        largest = share;
+        best = id;
+      }
+    }
+    if (!best.IsValid()) {
+      break;
+    }
+    map.CullKeyframe(best);
+    ++culled;
   }
   return culled;
 }

@@ -46,6 +46,14 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
                   MappingRule rule = MappingRule::kHullslam);
 
+// Removes up to two keyframes if the map has more than `most` (mapping.max_keyframes): those with
+// the largest share of landmarks that enough others see too (as for CullKeyframes). The root, the
+// newest 20, and those with a share of less than a half stay, even if the bound is exceeded. So do
+// keyframes whose neighbours in time have little in common without them, and those that an object
+// needs to have `min_object_views`. To be called once per keyframe. Returns how many were removed.
+int CullOverBound(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
+                  size_t most);
+
 // Compacts keyframes that are old, so that later steps hardly need all of their keypoints
 // (map/compaction.h). These are the keyframes that are more than 20 keyframes older than `current`
 // and are covisible neither with `current` nor with a keyframe that is covisible with it. `full`

@@ -108,6 +108,11 @@ bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   }
   AddEntities(keyframe, hurry);
   Improve(keyframe, hurry, options_.cull_keyframes ? Culling::kKeyframes : Culling::kNone);
+  if (options_.max_keyframes > 0) {
+    const ScopedTimer timer(times_, "cull_keyframes");
+    CullOverBound(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views),
+                  static_cast<size_t>(options_.max_keyframes));
+  }
   full_.push_back(keyframe);
   if (options_.compact_keyframes) {
     const ScopedTimer timer(times_, "compact_keyframes");

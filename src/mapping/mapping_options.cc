@@ -11,6 +11,9 @@ void MappingOptions::Bind(OptionTable& options) {
             "largest number of fixed keyframes in local bundle adjustment; 0: all that observe "
             "its landmarks");
   scope.Add("cull_keyframes", &cull_keyframes, "remove redundant keyframes");
+  scope.Add("max_keyframes", &max_keyframes, Range::AtLeast(0),
+            "largest number of keyframes in the map; 0: no bound. Those go first of which others "
+            "see most, none that connects places or that an object needs");
   scope.AddEnum("culling_rule", &culling_rule, {"hullslam", "orb_slam2"},
                 "which keyframes are redundant: also observations of objects, far landmarks and "
                 "directions count, or the rule of ORB-SLAM2");

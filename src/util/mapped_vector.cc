@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -42,6 +43,7 @@ MappedMemory& MappedMemory::operator=(MappedMemory&& other) noexcept {
   std::swap(is_without_file_, other.is_without_file_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
+  std::swap(given_back_, other.given_back_);
   return *this;
 }
 
@@ -93,9 +95,16 @@ void MappedMemory::GrowWithoutFile(size_t bytes) {
 
 void MappedMemory::GiveBack(size_t bytes) {
   const size_t whole = bytes / PageSize() * PageSize();
-  if (file_ >= 0 && whole > 0) {
-    madvise(data_, whole, MADV_DONTNEED);  // of a shared file: the content stays in the file
+  if (file_ < 0 || whole == 0) {
+    return;
   }
+  given_back_ = given_back_ < whole ? given_back_ : 0;
+  for (const size_t begin : {whole - std::min(whole, kMostGivenBack), given_back_}) {
+    // Of a shared file: the content stays in the file.
+    madvise(static_cast<std::byte*>(data_) + begin, std::min(whole - begin, kMostGivenBack),
+            MADV_DONTNEED);
+  }
+  given_back_ += kMostGivenBack;
 }
 
 void MappedMemory::Clear() {
@@ -109,6 +118,7 @@ void MappedMemory::Clear() {
   is_without_file_ = false;
   data_ = nullptr;
   size_ = 0;
+  given_back_ = 0;
 }
 
 }  // namespace hullslam

@@ -611,6 +611,72 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
       << "keyframe 1 sees its landmarks at a finer level";
 }
 
+// Calls CullOverBound as mapping does, once for each of so many keyframes.
+int CullOften(Map& map, const Sensor& sensor, size_t most, int times) {
+  const KeyframeId current(map.keyframes().NextId().value - 1);
+  int culled = 0;
+  for (int i = 0; i < times; ++i) {
+    culled += CullOverBound(map, current, sensor, kMinObjectViews, most);
+    EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  }
+  return culled;
+}
+
+TEST(CullOverBound, KeepsAsManyAsItMayAndTheNewest) {
+  const SyntheticWorld world;
+  SyntheticMap made = NearbyKeyframes(world, 50);
+  EXPECT_EQ(CullOften(made.map, world.sensor(), 50, 1), 0);
+  EXPECT_EQ(CullOften(made.map, world.sensor(), 40, 1), 2) << "few at a time";
+  EXPECT_EQ(CullOften(made.map, world.sensor(), 40, 9), 8);
+  EXPECT_EQ(CullOften(made.map, world.sensor(), 1, 20), 18);
+  EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(0))) << "the root";
+  for (uint32_t i = 29; i < 50; ++i) {
+    EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(i)));
+  }
+}
+
+TEST(CullOverBound, AnObjectKeepsItsLastViews) {
+  const SyntheticWorld world;
+  SyntheticMap made = NearbyKeyframes(world, 50);
+  const ObjectId object = made.map.AddObject();
+  for (uint32_t i = 3; i <= 10; ++i) {
+    ASSERT_TRUE(made.map.AddObservation(object, KeyframeId(i), 0));
+  }
+  CullOften(made.map, world.sensor(), 1, 20);
+  EXPECT_EQ(made.map.keyframes().size(), 25u);
+  EXPECT_EQ(made.map.objects().At(object).observations.size(), kMinObjectViews);
+}
+
+// Enough others see a quarter of what keyframe 1 sees, all of what keyframe 2 sees, and the less of
+// what each of the next nine sees.
+TEST(CullOverBound, TheMostRedundantGoFirstAndThoseThatSeeMostAloneStay) {
+  Map map;
+  std::vector<KeyframeId> ids;
+  for (uint32_t i = 0; i < 40; ++i) {
+    ids.push_back(map.AddKeyframe(MakeFrame(i, 300, 300), Rigid3()));
+  }
+  const std::vector<KeyframeId> place(ids.begin() + 2, ids.begin() + 12);
+  Share(map, {ids[1], ids[0]}, 150);
+  Share(map, {ids[1], ids[2], ids[3], ids[4], ids[5]}, 50);
+  for (size_t i = 1; i < place.size(); ++i) {
+    Share(map, {place[i], ids[0]}, 3 * static_cast<int>(i));
+  }
+  Share(map, place, 60);
+  Share(map, {ids.begin() + 12, ids.end()}, 100);
+  for (const KeyframeId id : ids) {
+    UpdateCovisibility(map, id);
+    if (id.value > 0 && !map.keyframes().At(id).parent.IsValid()) {
+      SetParent(map, id, KeyframeId(0));
+    }
+  }
+  CullOften(map, SyntheticSensor(), 38, 1);
+  EXPECT_FALSE(map.keyframes().Contains(place[0]));
+  EXPECT_TRUE(map.keyframes().Contains(place[9]));
+  CullOften(map, SyntheticSensor(), 1, 30);
+  EXPECT_TRUE(map.keyframes().Contains(ids[1]));
+  EXPECT_LT(map.keyframes().size(), 34u);
+}
+
 TEST(FindRecentLandmarks, FindsLandmarksThatMayStillBeCulled) {
   Map map;
   for (int i = 0; i < 6; ++i) {

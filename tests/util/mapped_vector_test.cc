@@ -2,11 +2,17 @@
 #include "hullslam/util/mapped_vector.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "support/file_size_limit.h"
 
@@ -86,6 +92,42 @@ TEST(MappedMemory, PagesThatWereGivenBackKeepTheirContent) {
   for (size_t i = 0; i < kBytes; ++i) {
     ASSERT_EQ(bytes[i], i % 251);
   }
+}
+
+// The number of pages of these bytes that take memory of this process (Linux, pagemap).
+size_t PresentPages(const MappedMemory& memory, size_t bytes) {
+  const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+  std::vector<uint64_t> entries(bytes / page);
+  std::ifstream in("/proc/self/pagemap", std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(reinterpret_cast<uintptr_t>(memory.data()) / page * 8));
+  in.read(reinterpret_cast<char*>(entries.data()),
+          static_cast<std::streamsize>(8 * entries.size()));
+  EXPECT_TRUE(in.good());
+  return static_cast<size_t>(
+      std::ranges::count_if(entries, [](uint64_t entry) { return (entry >> 63U) != 0; }));
+}
+
+TEST(MappedMemory, GivesAllBackInTurnButLittleAtATime) {
+  constexpr size_t kBytes = 5 * MappedMemory::kMostGivenBack;
+  MappedMemory memory;
+  memory.Grow(kBytes);
+  if (!memory.has_file()) {
+    GTEST_SKIP() << "no room for a temporary file";
+  }
+  std::memset(memory.data(), 1, kBytes);
+  const size_t all = PresentPages(memory, kBytes);
+  const size_t most = all / 5;
+  memory.GiveBack(kBytes);
+  EXPECT_EQ(PresentPages(memory, kBytes), all - 2 * most) << "the last and the first ones";
+  memory.GiveBack(kBytes);
+  EXPECT_EQ(PresentPages(memory, kBytes), all - 3 * most);
+  memory.GiveBack(kBytes);
+  memory.GiveBack(kBytes);
+  EXPECT_EQ(PresentPages(memory, kBytes), 0u);
+  memory.GiveBack(kBytes);
+  EXPECT_EQ(static_cast<const char*>(memory.data())[0], 1);
+  memory.GiveBack(kBytes);
+  EXPECT_EQ(PresentPages(memory, kBytes), 0u) << "it begins again";
 }
 
 TEST(MappedMemory, AFullDiskIsNoReasonToEndARun) {

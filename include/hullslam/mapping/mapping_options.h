@@ -15,6 +15,7 @@ struct MappingOptions {
   // landmarks.
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
+  int max_keyframes = 0;  // bound of the map (mapping/culling.h); 0: none
   MappingRule culling_rule = MappingRule::kHullslam;  // of keyframes
   MappingRule landmark_rule = MappingRule::kHullslam;
   bool final_bundle_adjustment = true;  // adjusts the whole map at the end of the run

@@ -24,8 +24,10 @@ class MappedMemory {
   // Makes it at least this large. The content is kept, but its address may change. Throws
   // std::bad_alloc if there is no memory.
   void Grow(size_t bytes);
-  // Gives the whole pages of the first bytes back. Their content stays, and is read from the file
-  // when it is needed.
+  // Gives whole pages of the first bytes back: the last kMostGivenBack bytes of these, and as many
+  // of the others in turn, so that a call takes no longer when much was read. Their content stays,
+  // and is read from the file when it is needed.
+  static constexpr size_t kMostGivenBack = size_t{16} << 20;
   void GiveBack(size_t bytes);
   void Clear();
 
@@ -41,6 +43,7 @@ class MappedMemory {
   bool is_without_file_ = false;
   void* data_ = nullptr;
   size_t size_ = 0;
+  size_t given_back_ = 0;  // where the next turn begins
 };
 
 // A vector that only grows at its end, for records of a run that may last for hours: the first
