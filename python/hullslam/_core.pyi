@@ -495,8 +495,8 @@ class System:
                  vocabulary: _Path | None = "default", map: _Path | None = None,
                  session: str = "", localization: bool = False, seed: int = 0,
                  mask_all: npt.NDArray[np.bool_] | npt.NDArray[np.uint8] | None = None,
-                 mask_all_right: npt.NDArray[np.bool_] | npt.NDArray[np.uint8] | None = None
-                 ) -> None:
+                 mask_all_right: npt.NDArray[np.bool_] | npt.NDArray[np.uint8] | None = None,
+                 start_pose: _Doubles | None = None) -> None:
         """settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for
         a rectified pair of cameras, whose left one the settings describe with Camera.bf.
         pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of
@@ -508,6 +508,8 @@ class System:
         seed: seed of all random choices.
         mask_all, mask_all_right: (height, width) bool or uint8, or None: pixels that are 0
         are ignored in all images, or in all right images of a stereo camera.
+        start_pose: (4, 4) world_from_cam of the first image of a new map, m, or None: the
+        world is the frame of this camera.
         """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
               right: _Image | None = None, masks_right: Masks | None = None,

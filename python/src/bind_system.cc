@@ -60,11 +60,13 @@ std::unique_ptr<LiveSystem> MakeSystem(const SettingsTable& settings, const std:
                                        const std::optional<fs::path>& vocabulary,
                                        const std::optional<fs::path>& map,
                                        const std::string& session, bool localization, uint64_t seed,
-                                       const py::object& mask_all,
-                                       const py::object& mask_all_right) {
+                                       const py::object& mask_all, const py::object& mask_all_right,
+                                       const py::object& start_pose) {
   const PinholeCamera& camera = settings.options.camera;
   const cv::Mat mask = MaskOfAll(mask_all, "mask_all", camera);
   const cv::Mat right_mask = MaskOfAll(mask_all_right, "mask_all_right", camera);
+  const auto first =
+      start_pose.is_none() ? std::nullopt : std::optional(ToPose(start_pose, "start_pose"));
   const auto kind = Choose<PipelineKind>("pipeline", pipeline,
                                          {{"sequential", PipelineKind::kSequential},
                                           {"threaded", PipelineKind::kThreaded},
@@ -73,8 +75,9 @@ std::unique_ptr<LiveSystem> MakeSystem(const SettingsTable& settings, const std:
     SystemOptions options = OptionsOf(settings, mode, vocabulary, seed);
     options.mask_all = mask;
     options.mask_all_right = right_mask;
-    return std::make_unique<LiveSystem>(options, kind,
-                                        MakeStart(options, map, session, localization));
+    SystemStart start = MakeStart(options, map, session, localization);
+    start.world_from_cam = first;
+    return std::make_unique<LiveSystem>(options, kind, std::move(start));
   });
 }
 
@@ -246,7 +249,7 @@ void BindSystem(py::module_& module) {
            py::arg("pipeline") = "sequential", py::arg("vocabulary") = fs::path("default"),
            py::arg("map") = py::none(), py::arg("session") = "", py::arg("localization") = false,
            py::arg("seed") = 0, py::arg("mask_all") = py::none(),
-           py::arg("mask_all_right") = py::none(),
+           py::arg("mask_all_right") = py::none(), py::arg("start_pose") = py::none(),
            "settings: Settings. mode: 'rgbd', 'mono' for a camera without depth, or 'stereo' for\n"
            "a rectified pair of cameras, whose left one the settings describe with Camera.bf.\n"
            "pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of\n"
@@ -257,7 +260,9 @@ void BindSystem(py::module_& module) {
            "the map. localization: True to find poses in `map` without changing it.\n"
            "seed: seed of all random choices.\n"
            "mask_all, mask_all_right: (height, width) bool or uint8, or None: pixels that are 0\n"
-           "are ignored in all images, or in all right images of a stereo camera.")
+           "are ignored in all images, or in all right images of a stereo camera.\n"
+           "start_pose: (4, 4) world_from_cam of the first image of a new map, m, or None: the\n"
+           "world is the frame of this camera.")
       .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
            py::arg("masks") = py::none(), py::kw_only(), py::arg("right") = py::none(),
            py::arg("masks_right") = py::none(), py::arg("timestamp"),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
@@ -23,6 +24,7 @@ struct PipelineStart {
   Session session = {};  // the session of the keyframes of this run
   // There are no keyframe requests, so nothing in the map is changed.
   bool localization_only = false;
+  std::optional<Rigid3> world_from_cam = {};  // of the first image of a new map
 };
 
 // Runs the stages: frames in, poses out. Made by MakeSequentialPipeline and MakeThreadedPipeline.

@@ -29,6 +29,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
 
   void Begin(PipelineStart start) override {
     tracker_.LocaliseOnly(start.localization_only);
+    tracker_.BeginAt(start.world_from_cam);
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
 

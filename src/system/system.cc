@@ -138,7 +138,8 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   auto pipeline = MakePipeline(kind_, sensor_, options_);
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},
-                   .localization_only = start_.localization_only});
+                   .localization_only = start_.localization_only,
+                   .world_from_cam = start_.world_from_cam});
   is_localization_only_ = start_.localization_only;
   return pipeline;
 }

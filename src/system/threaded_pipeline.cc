@@ -54,6 +54,7 @@ class ThreadedPipeline final : public Pipeline {
   // Meanwhile the mapper's thread waits for its first message.
   void Begin(PipelineStart start) override {
     tracker_.LocaliseOnly(start.localization_only);
+    tracker_.BeginAt(start.world_from_cam);
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
 

@@ -116,6 +116,14 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
 
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   MonocularInitialiser::Result initial = FindInitialMap(frame);
+  if (initial.map && start_) {
+    for (InitialMap::View& view : initial.map->views) {
+      view.cam_from_world = view.cam_from_world * Inverse(*start_);
+    }
+    for (InitialMap::Point& point : initial.map->points) {
+      point.position = *start_ * point.position;
+    }
+  }
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }

@@ -64,6 +64,9 @@ class Tracker {
   // Whether no keyframe is requested from now on. If so, the next frame must come with a map.
   void LocaliseOnly(bool is_localizing_only = true) { is_localizing_only_ = is_localizing_only; }
 
+  // The pose of the camera in the first image of a new map; by default the identity.
+  void BeginAt(const std::optional<Rigid3>& world_from_cam) { start_ = world_from_cam; }
+
   // Requests tell the mapper to remember which ids have replaced those of snapshots from this
   // revision on (KeyframeRequest::oldest_revision), also if they do not need it themselves.
   void KeepIdsSince(uint32_t revision) { kept_revision_ = revision; }
@@ -159,6 +162,7 @@ class Tracker {
   EarlyFrames early_;
 
   bool is_localizing_only_ = false;
+  std::optional<Rigid3> start_;  // world_from_cam of the first image of a new map
   bool is_wide_ = false;             // see HasWideSteps
   bool has_had_wide_steps_ = false;  // whether they ever were, or the map was begun more than once
 

@@ -282,6 +282,17 @@ def test_one_mask_for_all_images_hides_its_pixels(settings, wall, kind):
         hullslam.System(settings, "rgbd", mask_all_right=np.ones((240, 320), bool))
 
 
+def test_a_new_map_begins_at_a_given_pose(settings, wall):
+    start = np.eye(4)
+    start[:3, 3] = 1, 2, 3
+    first, second = wall.track(hullslam.System(settings, start_pose=start), 0, 2)
+    assert np.allclose(first.world_from_cam, start)
+    (_, expected) = wall.track(hullslam.System(settings), 0, 2)
+    assert np.allclose(second.world_from_cam, start @ expected.world_from_cam, atol=1e-6)
+    with pytest.raises(hullslam.InputError, match="start_pose"):
+        hullslam.System(settings, start_pose=2 * start)
+
+
 def test_the_threaded_pipelines_work(settings, wall):
     for pipeline in ("threaded", "realtime"):
         slam = hullslam.System(settings, pipeline=pipeline)

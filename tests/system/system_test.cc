@@ -864,6 +864,21 @@ TEST(System, AFrameHasThePoseOfItsCamera) {
   }
 }
 
+TEST_P(SystemTest, ANewMapBeginsAtAGivenPose) {
+  const Rigid3 start(Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY())),
+                     {3.0, -1.0, 2.0});
+  System system(Wall::Options(), GetParam(), {.world_from_cam = start});
+  for (int i = 0; i < 8; ++i) {
+    const TrackedFrame frame = TrackFrame(system, i);
+    const Rigid3 expected = start * Inverse(Wall::CamFromWorld(i));
+    EXPECT_LT((frame.world_from_cam().translation - expected.translation).norm(), 0.01) << i;
+    EXPECT_LT(frame.world_from_cam().rotation.angularDistance(expected.rotation), 0.01) << i;
+  }
+  system.Finish();
+  EXPECT_LT((system.trajectory().front().world_from_cam.translation - start.translation).norm(),
+            0.01);
+}
+
 TEST(System, TheCallbackGetsAReportOfEachFrame) {
   System system(Wall::Options(), PipelineKind::kSequential);
   std::vector<FrameReport> reports;
