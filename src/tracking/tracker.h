@@ -162,7 +162,7 @@ class Tracker {
   EarlyFrames early_;
 
   bool is_localizing_only_ = false;
-  std::optional<Rigid3> start_;  // world_from_cam of the first image of a new map
+  std::optional<Rigid3> start_;      // world_from_cam of the first image of a new map
   bool is_wide_ = false;             // see HasWideSteps
   bool has_had_wide_steps_ = false;  // whether they ever were, or the map was begun more than once
 

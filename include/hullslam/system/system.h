@@ -49,8 +49,8 @@ struct SystemStart {
   std::string session_name = {};  // for Map::sessions(), such as the name of the sequence
   // Whether poses are found in the map without changing anything in it.
   bool localization_only = false;
-  // The pose of the camera in the first image of a new map, at a robot's dock for example; the world
-  // is the frame of this camera if absent. A loaded map has a world of its own.
+  // The pose of the camera in the first image of a new map, at a robot's dock for example; the
+  // world is the frame of this camera if absent. A loaded map has a world of its own.
   std::optional<Rigid3> world_from_cam = {};
 };
 
