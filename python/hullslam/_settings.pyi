@@ -133,6 +133,8 @@ class _mapping:
     """which keypoints become landmarks: all with depth and pairs whose expected parallax is large enough, or those that are near or whose own parallax is large enough, as in ORB-SLAM2 (one of: hullslam, orb_slam2; default hullslam)"""
     local_keyframes: int
     """largest number of keyframes that local bundle adjustment moves (an integer >= 2; default 20)"""
+    max_keyframes: int
+    """largest number of keyframes in the map; 0: no bound. Those go first of which others see most, none that connects places or that an object needs (an integer >= 0; default 0)"""
 
 class _objects_association:
     measure: Literal["combined", "class_overlap", "wasserstein"]
