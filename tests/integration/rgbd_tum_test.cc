@@ -20,6 +20,7 @@
 #include "files/text_rows.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/results/trajectory_file.h"
+#include "results/pose_file.h"
 #include "support/made_vocabulary.h"
 #include "support/plane_sequence.h"
 #include "support/read_folder.h"
@@ -281,7 +282,7 @@ TEST_F(RgbdTum, ARecordingOfLivePosesHasTheTransformsOfRos) {
       variances.push_back(reader.Get<double>());
     }
   });
-  const Trajectory live = ReadTrajectory(output_ / "live_poses.txt");
+  const Trajectory live = ReadPoseFile(output_ / "live_poses.txt").poses;
   ASSERT_EQ(live.size(), 40U);
   ASSERT_EQ(maps_from_odom.size(), live.size());
   ASSERT_EQ(of_odometry.size(), live.size());
