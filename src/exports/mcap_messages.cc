@@ -16,6 +16,7 @@ namespace hullslam {
 namespace {
 
 constexpr const char* kMapFrame = "map";
+constexpr const char* kOdometryFrame = "odom";
 constexpr const char* kCameraFrame = "camera";
 
 void PutTime(RosTime time, CdrWriter& message) {
@@ -150,12 +151,46 @@ std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera) {
   return message.Message();
 }
 
+namespace {
+
+void PutTransform(RosTime time, const char* parent, const char* child, const Rigid3& pose,
+                  CdrWriter& message) {
+  PutHeader(time, parent, message);
+  message.PutText(child);
+  PutPose(pose, message);
+}
+
+}  // namespace
+
 std::string TransformMessage(RosTime time, const Rigid3& world_from_cam) {
   CdrWriter message;
   message.PutCount(1);
-  PutHeader(time, kMapFrame, message);
-  message.PutText(kCameraFrame);
-  PutPose(world_from_cam, message);
+  PutTransform(time, kMapFrame, kCameraFrame, world_from_cam, message);
+  return message.Message();
+}
+
+std::string TransformMessage(RosTime time, const Odometry& odometry) {
+  CdrWriter message;
+  message.PutCount(2);
+  PutTransform(time, kMapFrame, kOdometryFrame, odometry.map_from_odom, message);
+  PutTransform(time, kOdometryFrame, kCameraFrame, odometry.odom_from_cam, message);
+  return message.Message();
+}
+
+std::string OdometryMessage(RosTime time, const Odometry& odometry,
+                            const Eigen::Matrix<double, 6, 6>& covariance) {
+  CdrWriter message;
+  PutTransform(time, kOdometryFrame, kCameraFrame, odometry.odom_from_cam, message);
+  const Eigen::Matrix<double, 6, 6> in_odom =
+      InAxesOf({odometry.odom_from_cam.rotation, Eigen::Vector3d::Zero()}, covariance);
+  for (int i = 0; i < 36; ++i) {
+    message.Put(in_odom((i / 6 + 3) % 6, (i + 3) % 6));
+  }
+  PutVector(odometry.linear_velocity, message);
+  PutVector(odometry.angular_velocity, message);
+  for (int i = 0; i < 36; ++i) {
+    message.Put(0.0);
+  }
   return message.Message();
 }
 

@@ -9,13 +9,15 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/trajectory.h"
+#include "hullslam/map/messages.h"
 #include "report/object_results.h"
 #include "results/unit_mesh.h"
 
 namespace hullslam {
 
-// The results of a run as messages of ROS 2, in CDR. The world is the frame "map", the camera (x to
-// the right, y down, z ahead) the frame "camera". Lengths are in the unit of the map.
+// The results of a run as messages of ROS 2, in CDR. The world is the frame "map", that of the
+// odometry "odom", the camera (x to the right, y down, z ahead) the frame "camera". Lengths are in
+// the unit of the map.
 
 // A time stamp as ROS has it, rounded to microseconds as in trajectory.txt.
 struct RosTime {
@@ -33,6 +35,13 @@ std::string JpegMessage(RosTime time, std::string_view jpeg);
 std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera);
 // tf2_msgs/msg/TFMessage with the pose of the camera in the map.
 std::string TransformMessage(RosTime time, const Rigid3& world_from_cam);
+// The same as two transforms: the odometry in the map, and the camera in the odometry.
+std::string TransformMessage(RosTime time, const Odometry& odometry);
+// nav_msgs/msg/Odometry of the camera in the odometry. `covariance` is that of the pose in the map
+// (TrackedFrame::covariance). The message has the position before the rotation, both in the axes of
+// the odometry. The covariance of the velocity is 0, which stands for unknown.
+std::string OdometryMessage(RosTime time, const Odometry& odometry,
+                            const Eigen::Matrix<double, 6, 6>& covariance);
 // nav_msgs/msg/Path. Poses whose stamps ROS cannot express throw InputError.
 std::string PathMessage(RosTime time, const Trajectory& trajectory);
 // sensor_msgs/msg/PointCloud2 with the fields x, y, z and rgb. There is a colour for each point.

@@ -30,6 +30,9 @@ class RunRecorder {
     for (const StampedPose& pose : *run.trajectory) {
       poses_[pose.timestamp] = pose.world_from_cam;
     }
+    for (const TrackedFrame& frame : run.live) {
+      live_[frame.timestamp] = &frame;
+    }
   }
 
   // Returns the number of images that could not be read.
@@ -69,8 +72,39 @@ class RunRecorder {
     return PointsMessage(time, positions, colours.Colours());
   }
 
+  void AddPoses() {
+    transforms_ = Add("/tf", "tf2_msgs/msg/TFMessage");
+    if (!live_.empty()) {
+      odometry_ = Add("/odom", "nav_msgs/msg/Odometry");
+    }
+  }
+
+  void WritePose(RosTime time, double timestamp) {
+    if (live_.empty()) {
+      if (const auto pose = poses_.find(timestamp); pose != poses_.end()) {
+        writer_.Write(transforms_, time.Nanoseconds(), TransformMessage(time, pose->second));
+      }
+      return;
+    }
+    const auto frame = live_.find(timestamp);
+    if (frame == live_.end() || !frame->second->odometry) {
+      return;
+    }
+    const Odometry& odometry = *frame->second->odometry;
+    const bool is_tracked = frame->second->state == TrackingState::kTracked;
+    if (is_tracked || odometry.step != OdometryStep::kStopped) {
+      writer_.Write(transforms_, time.Nanoseconds(), TransformMessage(time, odometry));
+    }
+    if (is_tracked) {
+      // The first pose has no covariance, because it defines the world.
+      const Eigen::Matrix<double, 6, 6> exact = Eigen::Matrix<double, 6, 6>::Zero();
+      writer_.Write(odometry_, time.Nanoseconds(),
+                    OdometryMessage(time, odometry, frame->second->covariance.value_or(exact)));
+    }
+  }
+
   size_t WriteFrames() {
-    const uint16_t transforms = Add("/tf", "tf2_msgs/msg/TFMessage");
+    AddPoses();
     const uint16_t cameras = Add("/camera/camera_info", "sensor_msgs/msg/CameraInfo");
     const uint16_t images = Add("/camera/image/compressed", "sensor_msgs/msg/CompressedImage");
     const PinholeCamera& camera = run_.options->camera;
@@ -78,9 +112,7 @@ class RunRecorder {
     for (size_t i = 0; i < run_.frames; ++i) {
       const FramePaths& frame = run_.sequence->frames[i];
       const RosTime time = ToRosTime(frame.timestamp);
-      if (const auto pose = poses_.find(frame.timestamp); pose != poses_.end()) {
-        writer_.Write(transforms, time.Nanoseconds(), TransformMessage(time, pose->second));
-      }
+      WritePose(time, frame.timestamp);
       try {
         const std::string jpeg =
             EncodeJpeg(LoadColour(*run_.sequence, frame, camera), kJpegQuality);
@@ -96,6 +128,9 @@ class RunRecorder {
   const RecordedRun& run_;
   McapWriter writer_;
   std::map<double, Rigid3> poses_;  // by time stamp
+  std::map<double, const TrackedFrame*> live_;
+  uint16_t transforms_ = 0;  // topics
+  uint16_t odometry_ = 0;
 };
 
 }  // namespace

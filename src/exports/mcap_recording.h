@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 #include "report/object_results.h"
@@ -22,6 +24,9 @@ struct RecordedRun {
   size_t frames = 0;  // the first frames of the sequence, which the run was given
   const Trajectory* trajectory = nullptr;
   const ObjectResults* objects = nullptr;
+  // The frames as they were when they were tracked. If there are any, the transforms are theirs and
+  // lead over the odometry; else they are the poses of the trajectory.
+  std::span<const TrackedFrame> live = {};
 };
 
 // Writes the run as an MCAP file with messages of ROS 2 (docs/bags.md), in the order of their

@@ -27,6 +27,8 @@ struct RunResult {
   std::optional<std::string> input_failure = {};  // why a frame's input ended the run early
   InitialisationSummary initialisation = {};
   MappedVector<FrameNote> notes = {};  // one per frame of the system
+  // The frames as they were tracked, for a recording of live poses; Finish computes some again.
+  std::vector<TrackedFrame> live = {};
 };
 
 // The content of summary.json for a finished run, but for masks, objects and what belongs to its

@@ -30,8 +30,6 @@ std::string PageOf(const Report& report) {
   return report.page;
 }
 
-namespace fs = std::filesystem;
-
 void CheckSavedFile(const char* option, const fs::path& file, const RunArguments& arguments) {
   if (file.empty()) {
     return;

@@ -191,7 +191,8 @@ RunResult TrackAll(const SlamRun& run) {
   progress.Clear();
   system.SetFrameCallback({});
   if (run.arguments.live_poses) {
-    run.output.Write({"live_poses.txt", FormatLivePoses(system.frames())});
+    result.live.assign(system.frames().begin(), system.frames().end());
+    run.output.Write({"live_poses.txt", FormatLivePoses(result.live)});
   }
   run.live.BeginFinishing();
   FinishMap(run.arguments.quiet, system);

@@ -113,6 +113,41 @@ TEST(McapMessagesTest, PosesAreThoseOfTheCameraInTheMap) {
   ExpectNumbers(of_path, NumbersOf(kPose));
 }
 
+// The camera looks along x of the odometry, so a motion ahead is one along x.
+TEST(McapMessagesTest, OdometryHasTransformsAndACovarianceInItsAxes) {
+  Odometry odometry;
+  odometry.map_from_odom = kPose;
+  odometry.odom_from_cam = {Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {4.0, 5.0, 6.0}};
+  odometry.linear_velocity = {0.1, 0.2, 0.3};
+  odometry.angular_velocity = {0.4, 0.5, 0.6};
+  const std::string transforms = TransformMessage({3, 4}, odometry);
+  FieldReader reader(kCdr, transforms, "tf");
+  EXPECT_EQ(reader.Get<uint32_t>(), 2u);
+  ExpectHeader(reader, {3, 4}, "map");
+  EXPECT_EQ(reader.GetText(), "odom");
+  ExpectNumbers(reader, NumbersOf(kPose));
+  ExpectHeader(reader, {3, 4}, "odom");
+  EXPECT_EQ(reader.GetText(), "camera");
+  ExpectNumbers(reader, NumbersOf(odometry.odom_from_cam));
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  covariance.diagonal() << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
+  covariance(2, 5) = covariance(5, 2) = 0.5;  // of the rotation about, and the motion along, z
+  const std::string message = OdometryMessage({3, 4}, odometry, covariance);
+  FieldReader of_odometry(kCdr, message, "odom");
+  ExpectHeader(of_odometry, {3, 4}, "odom");
+  EXPECT_EQ(of_odometry.GetText(), "camera");
+  ExpectNumbers(of_odometry, NumbersOf(odometry.odom_from_cam));
+  Eigen::Matrix<double, 6, 6> expected = Eigen::Matrix<double, 6, 6>::Zero();
+  expected.diagonal() << 6.0, 4.0, 5.0, 3.0, 1.0, 2.0;
+  expected(0, 3) = expected(3, 0) = 0.5;
+  for (const double number : expected.reshaped()) {
+    EXPECT_NEAR(of_odometry.Get<double>(), number, 1e-12);
+  }
+  ExpectNumbers(of_odometry, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6});
+  ExpectNumbers(of_odometry, std::vector<double>(36, 0.0));
+  EXPECT_THROW(of_odometry.Get<uint8_t>(), InputError);
+}
+
 TEST(McapMessagesTest, PointsHaveTheirColours) {
   const std::vector<Eigen::Vector3f> positions = {{1.0f, 2.0f, 3.0f}};
   const std::vector<Colour> colours = {{0x11, 0x22, 0x33}};

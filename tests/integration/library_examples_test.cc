@@ -5,14 +5,18 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/made_network.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -138,6 +142,77 @@ TEST_F(LibraryExamples, ARobotCrossesACoveredLens) {
             3);
   EXPECT_LT((odometry - in_map).norm(), 0.05);
   EXPECT_TRUE(std::filesystem::exists(map));
+}
+
+// A base that stands at another place and looks along x, as those of robots do. The true poses are
+// also those of the wheels, and five images are black.
+TEST_F(LibraryExamples, ANodeOfRosPublishesTheTransformsOfABase) {
+  const std::filesystem::path map = folder_.path() / "desk.map";
+  const std::vector<std::string> lines =
+      LinesOf("stubbed_hullslam_node",
+              {Desk(), "odometry", "map:=" + map.string(), "realtime:=false", "base_frame:=base",
+               "camera_in_base:=0.2 0.1 0.5 -0.5 0.5 -0.5 0.5"});
+  const Trajectory truth = ReadTrajectory(Desk() + "/groundtruth.txt");
+  const Rigid3 base_from_cam(Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.2, 0.1, 0.5});
+  std::map<std::string, std::vector<Rigid3>> poses;
+  std::vector<std::array<double, 3>> rest;  // variances, velocity
+  for (const std::string& line : lines) {
+    std::istringstream stream(line);
+    std::string topic;
+    std::string parent;
+    std::string child;
+    double stamp = 0.0;
+    Eigen::Vector3d position;
+    Eigen::Vector4d rotation;
+    stream >> topic >> parent >> child >> stamp;
+    if (!stream) {
+      EXPECT_TRUE(line.starts_with("events ")) << line;
+      continue;
+    }
+    for (double& number : position) {
+      stream >> number;
+    }
+    for (double& number : rotation) {
+      stream >> number;
+    }
+    auto& of_frames = poses[topic + " " + parent + " " + child];
+    EXPECT_NEAR(stamp, truth.at(of_frames.size()).timestamp, 1e-6) << line;
+    of_frames.emplace_back(Eigen::Quaterniond(rotation), position);
+    if (topic == "visual_odometry") {
+      auto& [x, turn, speed] = rest.emplace_back();
+      stream >> x >> turn >> speed;
+    }
+    EXPECT_TRUE(stream) << line;
+  }
+  const std::vector<Rigid3>& map_from_odom = poses["tf map odom"];
+  const std::vector<Rigid3>& odom_from_base = poses["tf odom base"];
+  ASSERT_EQ(poses.size(), 3U);
+  ASSERT_EQ(map_from_odom.size(), truth.size());
+  ASSERT_EQ(odom_from_base.size(), truth.size());
+  ASSERT_EQ(poses["visual_odometry odom base"].size(), truth.size());
+  const auto true_base = [&](size_t i) {
+    return base_from_cam * Inverse(truth[0].world_from_cam) * truth[i].world_from_cam *
+           Inverse(base_from_cam);
+  };
+  for (size_t i = 0; i < truth.size(); ++i) {
+    const Rigid3 expected = true_base(i);
+    const Rigid3 found = map_from_odom[i] * odom_from_base[i];
+    EXPECT_LT((found.translation - expected.translation).norm(), 0.005) << i;
+    EXPECT_LT(AngularDistance(found.rotation, expected.rotation), 0.005) << i;
+    EXPECT_EQ(poses["visual_odometry odom base"][i].translation, odom_from_base[i].translation);
+    if (i > 0) {
+      const Rigid3 step = Inverse(true_base(i - 1)) * expected;
+      const double seconds = truth[i].timestamp - truth[i - 1].timestamp;
+      EXPECT_NEAR(rest[i][2], step.translation.x() / seconds, 0.02) << i;
+      EXPECT_GT(rest[i][0], 0.0) << i;
+      EXPECT_LT(rest[i][1], 1e-3) << i;
+    }
+  }
+  EXPECT_GE(ReadMap(map).map.keyframes().size(), 1U);
+  const std::vector<std::string> again =
+      LinesOf("stubbed_hullslam_node",
+              {Desk(), "map:=" + map.string(), "realtime:=false", "localization_only:=true"});
+  EXPECT_GE(again.size(), 3U * 50U);
 }
 
 TEST_F(LibraryExamples, BadUsageAndInputAreRefused) {

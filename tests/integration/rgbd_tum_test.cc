@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,9 +15,12 @@
 #include <utility>
 #include <vector>
 
+#include "bags/mcap_bag.h"
+#include "bags/message_fields.h"
 #include "files/text_rows.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/results/trajectory_file.h"
+#include "results/pose_file.h"
 #include "support/made_vocabulary.h"
 #include "support/plane_sequence.h"
 #include "support/read_folder.h"
@@ -242,6 +247,61 @@ TEST_F(RgbdTum, ClosesALoopOnlyIfDriftMayExplainIt) {
   const Arguments large = {"--set", "loop.drift_base=3", "--set", "loop.turn_base=3"};
   EXPECT_EQ(loops(large), 1);
   EXPECT_EQ(loops(large + Arguments{"--vocabulary", "none"}), 0);
+}
+
+// The loop is a wrong one, so that it moves the map far.
+TEST_F(RgbdTum, ARecordingOfLivePosesHasTheTransformsOfRos) {
+  const PlaneSequence wall(40, 0.1, 40, 1360);
+  const fs::path file = folder_.path() / "run.mcap";
+  RunWell({wall.path(), "--quiet", "--live-poses", "--mcap", file, "--set", "loop.drift_base=3",
+           "--set", "loop.turn_base=3"});
+  ASSERT_EQ(Summary()["map"]["loops"], 1);
+  std::vector<Rigid3> maps_from_odom;
+  std::vector<Rigid3> odoms_from_cam;
+  std::vector<Rigid3> of_odometry;
+  std::vector<double> variances;  // of x
+  McapBag bag(file);
+  bag.Scan([&](const BagMessage& message) {
+    FieldReader reader(MessageCoding::kCdr, message.bytes, file);
+    const auto pose = [&](const std::string& parent, const std::string& child) {
+      reader.Get<int32_t>();
+      reader.Get<uint32_t>();
+      EXPECT_EQ(reader.GetText(), parent);
+      EXPECT_EQ(reader.GetText(), child);
+      std::array<double, 7> numbers{};
+      std::ranges::generate(numbers, [&] { return reader.Get<double>(); });
+      return Rigid3(Eigen::Quaterniond(&numbers[3]), Eigen::Vector3d(numbers.data()));
+    };
+    const std::string& topic = bag.topics()[message.topic].name;
+    if (topic == "/tf") {
+      EXPECT_EQ(reader.Get<uint32_t>(), 2U);
+      maps_from_odom.push_back(pose("map", "odom"));
+      odoms_from_cam.push_back(pose("odom", "camera"));
+    } else if (topic == "/odom") {
+      of_odometry.push_back(pose("odom", "camera"));
+      variances.push_back(reader.Get<double>());
+    }
+  });
+  const Trajectory live = ReadPoseFile(output_ / "live_poses.txt").poses;
+  ASSERT_EQ(live.size(), 40U);
+  ASSERT_EQ(maps_from_odom.size(), live.size());
+  ASSERT_EQ(of_odometry.size(), live.size());
+  double most_moved = 0.0;
+  for (size_t i = 0; i < live.size(); ++i) {
+    const Rigid3 composed = maps_from_odom[i] * odoms_from_cam[i];
+    EXPECT_LT((composed.translation - live[i].world_from_cam.translation).norm(), 1e-8) << i;
+    EXPECT_LT(AngularDistance(composed.rotation, live[i].world_from_cam.rotation), 1e-8) << i;
+    EXPECT_EQ(of_odometry[i].translation, odoms_from_cam[i].translation) << i;
+    EXPECT_EQ(variances[i] > 0.0, i > 0) << i;
+    if (i > 0) {
+      const double step =
+          (odoms_from_cam[i].translation - odoms_from_cam[i - 1].translation).norm();
+      EXPECT_NEAR(step, 0.08, 0.02) << "the odometry jumps at " << i;
+      most_moved = std::max(
+          most_moved, (maps_from_odom[i].translation - maps_from_odom[i - 1].translation).norm());
+    }
+  }
+  EXPECT_GT(most_moved, 0.5);
 }
 
 TEST_F(RgbdTum, ABrokenVocabularyIsRefused) {

@@ -97,6 +97,22 @@ class ForeignReaders(unittest.TestCase):
             rows[:, 4:] *= np.where(rows[:, 7:] < 0, -1, 1)
             np.testing.assert_allclose(rows, expected, atol=2e-6)
 
+    def test_live_poses_have_an_odometry(self):
+        subprocess.run([BIN / "rgbd_tum", self.folder / "desk", "--output", self.folder / "live",
+                        "--live-poses", "--mcap", self.folder / "live.mcap", "--quiet"], check=True)
+        topics = run_with_node("read_mcap.cjs", self.folder / "live.mcap")["topics"]
+        self.assertEqual(topics["/odom"]["type"], "nav_msgs/msg/Odometry")
+        self.assertEqual(topics["/odom"]["count"], FRAMES)
+        for sent, odometry in zip(topics["/tf"]["messages"], topics["/odom"]["messages"]):
+            names = [(each["header"]["frame_id"], each["child_frame_id"]) for each in sent["transforms"]]
+            self.assertEqual(names, [("map", "odom"), ("odom", "camera")])
+            self.assertEqual(odometry["pose"]["pose"]["position"],
+                             sent["transforms"][1]["transform"]["translation"])
+        covariance = np.reshape(odometry["pose"]["covariance"], (6, 6))
+        np.testing.assert_allclose(covariance, covariance.T, rtol=1e-6)
+        self.assertGreater(np.linalg.eigvalsh(covariance).min(), 0.0)
+        np.testing.assert_array_less(np.sqrt(np.diag(covariance)), 0.05)
+
     def test_images_are_those_of_the_sequence(self):
         message = self.topics["/camera/image/compressed"]["messages"][0]
         self.assertEqual(message["format"], "jpeg")

@@ -294,9 +294,20 @@ TEST_P(WaitingSystemTest, LocalizationIsSwitchedBetweenFrames) {
   for (int i = 26; i < 36; ++i) {
     TrackFrame(system, i);
   }
-  EXPECT_GT(system.map()->keyframes().size(), keyframes);
+  const size_t grown = system.map()->keyframes().size();
+  EXPECT_GT(grown, keyframes);
+  system.SetLocalizationOnly(true);
+  for (int i = 36; i < 42; ++i) {
+    EXPECT_EQ(TrackFrame(system, i).state, TrackingState::kTracked) << i;
+  }
+  EXPECT_EQ(system.map()->keyframes().size(), grown);
+  system.SetLocalizationOnly(false);
+  for (int i = 42; i < 56; ++i) {
+    TrackFrame(system, i);
+  }
+  EXPECT_GT(system.map()->keyframes().size(), grown);
   system.Finish();
-  EXPECT_EQ(system.trajectory().size(), 36u);
+  EXPECT_EQ(system.trajectory().size(), 56u);
   EXPECT_LT(MaxError(system.trajectory()), 0.02);
   system.SetLocalizationOnly(true);
   system.Reset();
