@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "hullslam/datasets/dataset.h"
 #include "hullslam/segmentation/segmenter.h"

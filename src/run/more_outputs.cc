@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <exception>
 #include <system_error>
-#include <utility>
 
 #include "datasets/run_files.h"
 #include "files/paths.h"

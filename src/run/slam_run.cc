@@ -191,8 +191,10 @@ RunResult TrackAll(const SlamRun& run) {
   progress.Clear();
   system.SetFrameCallback({});
   if (run.arguments.live_poses) {
-    result.live.assign(system.frames().begin(), system.frames().end());
-    run.output.Write({"live_poses.txt", FormatLivePoses(result.live)});
+    run.output.Write({"live_poses.txt", FormatLivePoses(system.frames())});
+    if (!run.arguments.mcap.empty()) {
+      result.live.assign(system.frames().begin(), system.frames().end());
+    }
   }
   run.live.BeginFinishing();
   FinishMap(run.arguments.quiet, system);

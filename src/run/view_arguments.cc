@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <string_view>
 #include <thread>
-#include <utility>
 
 #include "hullslam/map_files/map_file.h"
 #include "run/command_line.h"

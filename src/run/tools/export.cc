@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "exports/export_formats.h"
 #include "exports/export_input.h"

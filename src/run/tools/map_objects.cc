@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "files/plausible.h"
