@@ -11,6 +11,7 @@
 #include "hullslam/geometry/trajectory.h"
 #include "report/object_results.h"
 #include "results/unit_mesh.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -42,7 +43,8 @@ std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positio
 // the votes of each class.
 std::string DetectionsMessage(RosTime time, std::span<const ObjectResult> objects);
 // foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids in the colours of their classes
-// (ColourOfClass()), with their class names.
-std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects);
+// (ColourOfClass()), with their class names, and their boxes in the scene as cubes that are more
+// transparent.
+std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects, const Scene& scene);
 
 }  // namespace hullslam

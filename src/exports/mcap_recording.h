@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "hullslam/geometry/trajectory.h"
@@ -22,6 +23,7 @@ struct RecordedRun {
   size_t frames = 0;  // the first frames of the sequence, which the run was given
   const Trajectory* trajectory = nullptr;
   const ObjectResults* objects = nullptr;
+  const std::optional<Trajectory>* groundtruth = nullptr;  // which may tell what is upwards
 };
 
 // Writes the run as an MCAP file with messages of ROS 2 (docs/bags.md), in the order of their

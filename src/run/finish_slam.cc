@@ -108,7 +108,8 @@ int FinishSlam(const SlamRun& run, const RunResult& result) {
                             .sequence = &run.sequence,
                             .frames = result.given,
                             .trajectory = &content.trajectory,
-                            .objects = &content.objects});
+                            .objects = &content.objects,
+                            .groundtruth = &run.groundtruth});
   if (!arguments.quiet) {
     Print("{}{}results are in {}\n", DescribePriors(run.system.frames()),
           DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),
