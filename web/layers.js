@@ -97,6 +97,20 @@ export function landmarksLayer(store, look) {
   return points;
 }
 
+// The surface of `hullslam mesh`, in the colours of the images.
+export function surfaceLayer(store) {
+  const surface = store.get('surface');
+  if (!surface) {
+    return null;
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(surface.position, 3));
+  geometry.setAttribute('color', new THREE.BufferAttribute(surface.colour, 3, true));
+  geometry.setIndex(new THREE.BufferAttribute(surface.triangle, 1));
+  return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors || true,
+    side: THREE.DoubleSide }));
+}
+
 // A tube with the thickness of the scene that is never thicker than a few pixels, so that a path
 // does not hide what is near: the shader moves each point of its surface towards the centre line.
 const TUBE_SHADERS = {

@@ -5,7 +5,7 @@ import { frustumCorners, frustumSegments, positionAt, robustBounds, rotationAt }
   from './geometry.js';
 import { colourOfClass, themeColour } from './colours.js';
 import { boxesLayer, covisibilityLayer, gridLayer, groundtruthLayer, keyframesLayer,
-  landmarksLayer, loopsLayer, objectsLayer, scaleOfColours, trajectoryLayer } from './layers.js';
+  landmarksLayer, loopsLayer, objectsLayer, scaleOfColours, surfaceLayer, trajectoryLayer } from './layers.js';
 import { html } from './text.js';
 
 export const LAYERS = [
@@ -16,6 +16,8 @@ export const LAYERS = [
   { name: 'labels', title: 'Labels', parts: ['objects'], on: true, mark: 'var(--text)' },
   { name: 'landmarks', title: 'Landmarks', make: landmarksLayer, parts: ['landmarks', 'up'],
     on: true, mark: 'hsl(212, 60%, 60%)' },
+  { name: 'surface', title: 'Surface', make: surfaceLayer, parts: ['surface'], on: true,
+    mark: 'hsl(30, 25%, 55%)' },
   { name: 'trajectory', title: 'Trajectory', make: trajectoryLayer, parts: ['trajectory'],
     on: true, mark: 'var(--accent)' },
   { name: 'groundtruth', title: 'Ground truth', make: groundtruthLayer, parts: ['groundtruth'],

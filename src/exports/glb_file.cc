@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +25,7 @@ constexpr int kUnsignedInt = 5125;
 constexpr int kVertices = 34962;
 constexpr int kIndices = 34963;
 constexpr int kPoints = 0;
+constexpr int kLines = 1;
 constexpr int kLineStrip = 3;
 constexpr size_t kRoot = 0;  // index of the node "map"
 
@@ -93,16 +96,19 @@ size_t AddColours(std::span<const Colour> colours, Gltf& gltf) {
                      gltf);
 }
 
-size_t AddIndices(std::span<const TriangleMesh::Triangle> triangles, Gltf& gltf) {
+// The corners of triangles or the ends of edges.
+template <typename Shapes>
+size_t AddIndices(const Shapes& shapes, Gltf& gltf) {
   const size_t begin = gltf.binary.bytes().size();
-  for (const TriangleMesh::Triangle& triangle : triangles) {
-    for (const uint32_t corner : triangle) {
+  size_t count = 0;
+  for (const auto& shape : shapes) {
+    for (const uint32_t corner : shape) {
       gltf.binary.Put(corner);
+      ++count;
     }
   }
-  return AddAccessor(
-      begin, kIndices,
-      {{"componentType", kUnsignedInt}, {"count", 3 * triangles.size()}, {"type", "SCALAR"}}, gltf);
+  return AddAccessor(begin, kIndices,
+                     {{"componentType", kUnsignedInt}, {"count", count}, {"type", "SCALAR"}}, gltf);
 }
 
 size_t AddMaterial(const std::string& name, const Colour& colour, double opacity, Gltf& gltf) {
@@ -188,6 +194,41 @@ void AddCameras(const ExportModel& model, Gltf& gltf) {
   }
 }
 
+using CubeEdge = std::array<uint32_t, 2>;  // indices of the corners of the unit cube
+
+std::vector<CubeEdge> CubeEdges() {
+  const std::vector<Eigen::Vector3d> corners = UnitCube().corners;
+  std::vector<CubeEdge> edges;
+  for (uint32_t a = 0; a < corners.size(); ++a) {
+    for (uint32_t b = a + 1; b < corners.size(); ++b) {
+      if ((corners[a] - corners[b]).squaredNorm() < 5.0) {  // 4: an edge; 8 and 12: diagonals
+        edges.push_back({a, b});
+      }
+    }
+  }
+  return edges;
+}
+
+// Adds the edges of the object's box as a child of the last node, which is the object's. Scales of
+// this node would skew a box with a pose of its own, so its corners are in the frame of the node.
+void AddBox(const PlacedObject& placed, size_t edges, size_t material, Gltf& gltf) {
+  const UprightBox& box = *placed.object->box;
+  const Rigid3 shape_from_box = Inverse(placed.world_from_shape) * box.world_from_box;
+  std::vector<Eigen::Vector3d> corners;
+  for (const Eigen::Vector3d& corner : UnitCube().corners) {
+    corners.emplace_back((shape_from_box * corner.cwiseProduct(box.half_extents))
+                             .cwiseQuotient(placed.half_extents));
+  }
+  const size_t mesh = AddMesh({{"attributes", {{"POSITION", AddPositions(corners, gltf)}}},
+                               {"mode", kLines},
+                               {"indices", edges},
+                               {"material", material}},
+                              gltf);
+  Json& nodes = gltf.json["nodes"];
+  nodes.back()["children"].push_back(nodes.size());
+  nodes.push_back({{"name", placed.object->label + " box"}, {"mesh", mesh}});
+}
+
 void AddObjects(const Scene& scene, ObjectShape shape, Gltf& gltf) {
   constexpr double kOpacity = 0.5;
   if (scene.objects.empty()) {
@@ -196,15 +237,17 @@ void AddObjects(const Scene& scene, ObjectShape shape, Gltf& gltf) {
   const TriangleMesh mesh = MeshOf(shape);
   const size_t corners = AddPositions(mesh.corners, gltf);
   const size_t triangles = AddIndices(mesh.triangles, gltf);
-  std::map<std::string, size_t> meshes;  // by class
+  std::optional<size_t> edges;
+  std::map<std::string, size_t> meshes, materials;  // by class
   for (const PlacedObject& placed : PlaceObjects(scene, shape)) {
     const SceneObject& object = *placed.object;
     if (!meshes.contains(object.label)) {
-      const size_t material =
+      materials[object.label] =
           AddMaterial(object.label, ColourOfClass(object.label), kOpacity, gltf);
-      meshes[object.label] = AddMesh(
-          {{"attributes", {{"POSITION", corners}}}, {"indices", triangles}, {"material", material}},
-          gltf);
+      meshes[object.label] = AddMesh({{"attributes", {{"POSITION", corners}}},
+                                      {"indices", triangles},
+                                      {"material", materials[object.label]}},
+                                     gltf);
     }
     AddNode({{"name", object.label},
              {"mesh", meshes[object.label]},
@@ -219,6 +262,10 @@ void AddObjects(const Scene& scene, ObjectShape shape, Gltf& gltf) {
                {"times_seen", object.observations},
                {"quality", object.quality}}}},
             gltf);
+    if (object.box && shape != ObjectShape::kBoxes) {
+      edges = edges ? edges : AddIndices(CubeEdges(), gltf);
+      AddBox(placed, *edges, materials[object.label], gltf);
+    }
   }
 }
 

@@ -68,7 +68,9 @@ void PutColour(const Colour& colour, double alpha, CdrWriter& message) {
   message.Put(alpha);
 }
 
-void PutEntity(RosTime time, const ObjectResult& object, CdrWriter& message) {
+// `body` is null if the scene does not have the object.
+void PutEntity(RosTime time, const ObjectResult& object, const SceneObject* body,
+               CdrWriter& message) {
   constexpr double kFontPixels = 14.0;
   const Rigid3& pose = object.ellipsoid.world_from_object;
   PutHeader(time, kMapFrame, message);  // the time and the frame
@@ -78,8 +80,14 @@ void PutEntity(RosTime time, const ObjectResult& object, CdrWriter& message) {
   message.Put(uint8_t{0});  // it stays in the frame
   message.PutCount(0);      // metadata
   message.PutCount(0);      // arrows
-  message.PutCount(0);      // cubes
-  message.PutCount(1);      // spheres
+  const bool has_box = body != nullptr && body->box;
+  message.PutCount(has_box ? 1 : 0);  // cubes
+  if (has_box) {
+    PutPose(body->box->world_from_box, message);
+    PutVector(2.0 * body->box->half_extents, message);
+    PutColour(ColourOfClass(object.label), 0.2, message);
+  }
+  message.PutCount(1);  // spheres
   PutPose(pose, message);
   PutVector(2.0 * object.ellipsoid.half_axes, message);
   PutColour(ColourOfClass(object.label), 0.5, message);
@@ -267,13 +275,13 @@ std::string DetectionsMessage(RosTime time, std::span<const ObjectResult> object
   return message.Message();
 }
 
-std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects) {
+std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects, const Scene& scene) {
   const std::vector<const ObjectResult*> mapped = MappedObjects(objects);
   CdrWriter message;
   message.PutCount(0);  // deletions
   message.PutCount(mapped.size());
   for (const ObjectResult* const object : mapped) {
-    PutEntity(time, *object, message);
+    PutEntity(time, *object, scene.Find(object->id), message);
   }
   return message.Message();
 }

@@ -12,6 +12,7 @@
 #include "hullslam/map/messages.h"
 #include "report/object_results.h"
 #include "results/unit_mesh.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -51,7 +52,8 @@ std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positio
 // the votes of each class.
 std::string DetectionsMessage(RosTime time, std::span<const ObjectResult> objects);
 // foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids in the colours of their classes
-// (ColourOfClass()), with their class names.
-std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects);
+// (ColourOfClass()), with their class names, and their boxes in the scene as cubes that are more
+// transparent.
+std::string SceneMessage(RosTime time, std::span<const ObjectResult> objects, const Scene& scene);
 
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -27,6 +28,7 @@ struct RecordedRun {
   // The frames as they were when they were tracked. If there are any, the transforms are theirs and
   // lead over the odometry; else they are the poses of the trajectory.
   std::span<const TrackedFrame> live = {};
+  const std::optional<Trajectory>* groundtruth = nullptr;  // which may tell what is upwards
 };
 
 // Writes the run as an MCAP file with messages of ROS 2 (docs/bags.md), in the order of their

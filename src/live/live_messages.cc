@@ -12,6 +12,7 @@
 #include "util/text.h"
 #include "view/aligned_truth.h"
 #include "view/view_message.h"
+#include "view/view_of_map.h"
 
 namespace hullslam {
 namespace {
@@ -151,15 +152,19 @@ std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool 
     columns["id"] = PackArray(change.keyframes.ids);
     parts.patch["keyframes"] = PatchOf(change.keyframes, std::move(columns));
   }
-  if (change.were_objects_removed || !change.objects.empty()) {
+  for (const ObjectId id : change.objects) {
+    bodies_.erase(id);
+  }
+  const bool are_all_sent = (is_at_rest && FindBoxes(state.map)) || change.were_objects_removed;
+  if (are_all_sent || !change.objects.empty()) {
     Json objects = Json::array();
     for (const auto& [id, object] : map_.objects()) {
-      if (change.were_objects_removed ||
+      if (are_all_sent ||
           std::find(change.objects.begin(), change.objects.end(), id) != change.objects.end()) {
-        objects.push_back(ObjectJson({object, {}, {}}, run_.start));
+        objects.push_back(ObjectJson(Shown(id, object), run_.start));
       }
     }
-    (change.were_objects_removed ? parts.set : parts.add)["objects"] = std::move(objects);
+    (are_all_sent ? parts.set : parts.add)["objects"] = std::move(objects);
   }
   if (change.were_edges_changed) {
     parts.set["edges"] = EdgesJson(map_.edges());
@@ -168,6 +173,26 @@ std::optional<std::string> LiveMessages::MapChange(const LiveState& state, bool 
   FollowCounts(state, parts);
   std::string text = parts.Format();
   return text.empty() ? std::nullopt : std::optional(std::move(text));
+}
+
+// Finds the boxes of a map that rests, as the report does. False if they are known, or if there are
+// none.
+bool LiveMessages::FindBoxes(const std::shared_ptr<const Map>& map) {
+  if (map == rested_) {
+    return false;
+  }
+  rested_ = map;
+  bodies_ = BodiesOf(*map, run_.sensor.camera,
+                     run_.groundtruth.empty() ? std::nullopt : std::optional(run_.groundtruth));
+  return !bodies_.empty();
+}
+
+ViewObject LiveMessages::Shown(ObjectId id, const ObjectResult& object) const {
+  ViewObject shown{object, {}, {}};
+  if (const auto body = bodies_.find(id); body != bodies_.end()) {
+    shown.body = body->second;
+  }
+  return shown;
 }
 
 // New poses are added. After a correction of the map, all poses are new.
@@ -268,7 +293,7 @@ std::string LiveMessages::Whole(const LiveControls& controls) const {
   model.trajectory = path_;
   model.summary = SummaryPart();
   for (const auto& [id, object] : map_.objects()) {
-    model.objects.push_back({object, {}, {}});
+    model.objects.push_back(Shown(id, object));
   }
   if (map_.IsThinned()) {
     model.notes.push_back(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -49,8 +51,8 @@ class LiveMessages {
   std::string Frame(const LiveFrame* frame, const LiveControls& controls, double rate);
   // Follows the map and the path. Returns what has changed since the last call; nothing if there is
   // no difference. Without `is_limited`, all changes are made at once. If the run `is_at_rest`, in
-  // a pause or at its end, the errors are of the whole path; else they follow it with some
-  // delay. The map of the state must not be null.
+  // a pause or at its end, objects get their boxes, and the errors are of the whole path; else they
+  // follow it with some delay. The map of the state must not be null.
   std::optional<std::string> MapChange(const LiveState& state, bool is_limited,
                                        bool is_at_rest = false);
   // All that the calls of MapChange() have given so far.
@@ -68,6 +70,8 @@ class LiveMessages {
     std::string Format() const;  // empty if there are none
   };
 
+  bool FindBoxes(const std::shared_ptr<const Map>& map);
+  ViewObject Shown(ObjectId id, const ObjectResult& object) const;
   void FollowPath(const LiveState& state, bool is_at_rest, Parts& parts);
   void FollowCounts(const LiveState& state, Parts& parts);
   void Align(bool is_at_rest, Parts& parts);
@@ -77,6 +81,8 @@ class LiveMessages {
   const LiveRun run_;
   LivePictures pictures_;
   LiveMap map_;
+  std::shared_ptr<const Map> rested_;               // of which the boxes are
+  std::map<ObjectId, SceneObject> bodies_ = {};     // without objects that were changed since
   nlohmann::json live_ = nlohmann::json::object();  // the parts of the last frame
   nlohmann::json image_;
   Trajectory path_;    // as the browsers have it

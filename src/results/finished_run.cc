@@ -13,6 +13,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
+#include "results/output_folder.h"
 #include "results/scene_file.h"
 #include "util/text.h"
 
@@ -104,6 +105,10 @@ Trajectory FinishedRun::ReadKeyframePoses() const {
 
 std::optional<PlyPoints> FinishedRun::ReadLandmarkPoints() const {
   return Has("map.ply") ? std::optional(ReadMapLandmarks(folder / "map.ply")) : std::nullopt;
+}
+
+std::optional<PlySurface> FinishedRun::ReadSurface() const {
+  return Has(kSurfaceFile) ? std::optional(ReadPlySurface(folder / kSurfaceFile)) : std::nullopt;
 }
 
 std::optional<ObjectResults> FinishedRun::ReadObjectResults() const {

@@ -57,6 +57,8 @@ struct FinishedRun {
   Trajectory ReadKeyframePoses() const;  // of all sessions
   // The landmarks of map.ply. Absent, like the others, if the run has no such file.
   std::optional<PlyPoints> ReadLandmarkPoints() const;
+  // The surface that `hullslam mesh` has made of the run: mesh.ply.
+  std::optional<PlySurface> ReadSurface() const;
   std::optional<ObjectResults> ReadObjectResults() const;
   std::optional<Scene> ReadSceneGraph() const;
   // The ground truth that the run has converted, so that it has the stamps and axes of its poses.

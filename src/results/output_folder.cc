@@ -30,9 +30,10 @@ constexpr const char* kPrefix = ".hullslam-";  // prefix of the names of staging
 constexpr const char* kReady =
     "ready";  // name of the folder with the files of a complete run, inside a staging folder
 constexpr std::array<const char*, 2> kIndexes = {"summary.json", "pictures.json"};
-// The pictures that scripts/plot_run.py draws of a run. They are removed together with the files of
-// the run.
-constexpr std::array<const char*, 3> kDrawnNames = {"run.png", "overlays.png", "report.html"};
+// What other programs make of a run: the pictures of scripts/plot_run.py, the report and the
+// surface of `hullslam mesh`. They are removed together with the files of the run.
+constexpr std::array<const char*, 4> kDrawnNames = {"run.png", "overlays.png", "report.html",
+                                                    kSurfaceFile};
 
 bool IsPlainName(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;

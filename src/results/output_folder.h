@@ -11,6 +11,9 @@ namespace hullslam {
 
 class StagingFolder;
 
+// The name of a surface of a run in its output folder, where `hullslam mesh` may write it.
+inline constexpr const char* kSurfaceFile = "mesh.ply";
+
 // A file of a run, by its name in the output folder.
 struct FileContent {
   std::string name;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <string_view>
@@ -19,8 +20,36 @@ constexpr std::string_view kStart = "ply\nformat binary_little_endian 1.0\neleme
 constexpr std::string_view kProperties =
     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
     "green\nproperty uchar blue\n";
+constexpr std::string_view kFaces = "property int object\nelement face ";
+constexpr std::string_view kCorners = "\nproperty list uchar int vertex_indices\nend_header\n";
 constexpr std::string_view kEnd = "end_header\n";
 constexpr size_t kBytesPerVertex = 15;
+constexpr size_t kBytesPerObject = 4;  // the id of the object of a vertex of a surface
+constexpr size_t kBytesPerFace = 13;
+constexpr float kMostMetresAway = 1e6f;
+constexpr const char* kCutOff = "is cut off, it has fewer vertices than its header says";
+
+// Takes a text from the beginning of `rest`. False if `rest` begins otherwise.
+bool TakeText(std::string_view text, std::string_view& rest) {
+  const bool is_there = rest.starts_with(text);
+  rest.remove_prefix(is_there ? text.size() : 0);
+  return is_there;
+}
+
+// The same for a number.
+bool TakeCount(std::string_view& rest, size_t& count) {
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), count);
+  rest.remove_prefix(static_cast<size_t>(end - rest.data()));
+  return error == std::errc();
+}
+
+Colour ReadPlyColour(ByteReader& reader) {
+  Colour colour{};
+  for (uint8_t& channel : colour) {
+    channel = reader.Get<uint8_t>();
+  }
+  return colour;
+}
 
 [[noreturn]] void Fail(const std::filesystem::path& path, const char* reason) {
   throw InputError(path.string() + ": " + reason);
@@ -32,13 +61,8 @@ PlyPoints ReadPlyPoints(const std::filesystem::path& path) {
   const std::string content = ReadFile(path, kMostBytes);
   std::string_view rest = content;
   size_t count = 0;
-  bool is_good = rest.starts_with(kStart);
-  if (is_good) {
-    rest.remove_prefix(kStart.size());
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), count);
-    rest.remove_prefix(static_cast<size_t>(end - rest.data()));
-    is_good = error == std::errc() && rest.starts_with(kProperties);
-  }
+  const bool is_good =
+      TakeText(kStart, rest) && TakeCount(rest, count) && TakeText(kProperties, rest);
   const size_t end = rest.find(kEnd);
   if (!is_good || end == std::string_view::npos) {
     Fail(path,
@@ -47,21 +71,17 @@ PlyPoints ReadPlyPoints(const std::filesystem::path& path) {
   }
   rest.remove_prefix(end + kEnd.size());
   if (count > rest.size() / kBytesPerVertex) {
-    Fail(path, "is cut off, it has fewer vertices than its header says");
+    Fail(path, kCutOff);
   }
   ByteReader reader(rest, path.string());
   PlyPoints points;
-  constexpr float kMost = 1e6f;
   for (size_t i = 0; i < count; ++i) {
     Eigen::Vector3f position;
     for (float& coordinate : position) {
       coordinate = reader.Get<float>();
     }
-    std::array<uint8_t, 3> colour{};
-    for (uint8_t& channel : colour) {
-      channel = reader.Get<uint8_t>();
-    }
-    if (position.allFinite() && position.cwiseAbs().maxCoeff() <= kMost) {
+    const Colour colour = ReadPlyColour(reader);
+    if (position.allFinite() && position.cwiseAbs().maxCoeff() <= kMostMetresAway) {
       points.positions.push_back(position);
       points.colours.push_back(colour);
     } else {
@@ -69,6 +89,46 @@ PlyPoints ReadPlyPoints(const std::filesystem::path& path) {
     }
   }
   return points;
+}
+
+PlySurface ReadPlySurface(const std::filesystem::path& path) {
+  const std::string content = ReadFile(path, kMostBytes);
+  std::string_view rest = content;
+  size_t vertices = 0;
+  size_t faces = 0;
+  if (!(TakeText(kStart, rest) && TakeCount(rest, vertices) && TakeText(kProperties, rest) &&
+        TakeText(kFaces, rest) && TakeCount(rest, faces) && TakeText(kCorners, rest))) {
+    Fail(path, "expected a file of `hullslam mesh --output FILE.ply`");
+  }
+  if (vertices > rest.size() / (kBytesPerVertex + kBytesPerObject)) {
+    Fail(path, kCutOff);
+  }
+  if (faces > (rest.size() - vertices * (kBytesPerVertex + kBytesPerObject)) / kBytesPerFace) {
+    Fail(path, "is cut off, it has fewer faces than its header says");
+  }
+  ByteReader reader(rest, path.string());
+  PlySurface surface;
+  for (size_t i = 0; i < vertices; ++i) {
+    const auto position = reader.GetMatrix<Eigen::Vector3f>(kMostMetresAway);
+    const Colour colour = ReadPlyColour(reader);
+    if (reader.Get<int32_t>() == -1 && surface.positions.size() == i) {  // the scene comes first
+      surface.positions.push_back(position);
+      surface.colours.push_back(colour);
+    }
+  }
+  for (size_t i = 0; i < faces; ++i) {
+    reader.Require(reader.Get<uint8_t>() == 3, "has a face that is no triangle");
+    TriangleMesh::Triangle triangle{};
+    for (uint32_t& corner : triangle) {
+      corner = reader.Get<uint32_t>();
+      reader.Require(corner < vertices, "has a face with a corner that is no vertex");
+    }
+    if (std::ranges::max(triangle) < surface.positions.size()) {
+      surface.triangles.push_back(triangle);
+    }
+  }
+  reader.ExpectEnd();
+  return surface;
 }
 
 PlyPoints ReadMapLandmarks(const std::filesystem::path& path) {

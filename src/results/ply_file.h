@@ -35,6 +35,19 @@ PlyPoints ReadPlyPoints(const std::filesystem::path& path);
 // a colour of their own. Throws as above.
 PlyPoints ReadMapLandmarks(const std::filesystem::path& path);
 
+// A surface of triangles whose vertices have colours.
+struct PlySurface {
+  std::vector<Eigen::Vector3f> positions;         // m
+  std::vector<Colour> colours;                    // one per position
+  std::vector<TriangleMesh::Triangle> triangles;  // indices into `positions`
+};
+
+// Reads the surface of the scene from a file of FormatMeshPly() (exports/single_files.h). Those of
+// the objects, which show the same places again, are left out. Throws InputError with the name of
+// the file if it has another format or is cut off, if a position is not finite or more than 1e6 m
+// from the origin, or if a triangle has a corner that is no vertex.
+PlySurface ReadPlySurface(const std::filesystem::path& path);
+
 // Makes binary little-endian PLY files whose vertices have `float x y z, uchar red green blue`, in
 // the world frame. Faces are `uchar 3, int a b c`.
 class PlyWriter {

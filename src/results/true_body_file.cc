@@ -16,10 +16,12 @@
 
 #include "files/json_file.h"
 #include "files/plausible.h"
+#include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "results/json_text.h"
 #include "results/pose_file.h"
 #include "results/true_object_file.h"
+#include "util/text.h"
 
 namespace hullslam {
 namespace {
@@ -27,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMetresPerMm = 1e-3;
+constexpr double kLengthTolerance = 1e-2;  // of quaternions, whose numbers may have 2 decimals
 
 // ---- a list of bodies
 
@@ -50,10 +53,10 @@ BodyKind ReadKind(const JsonNode& node) {
 
 // A pose whose quaternion has unit length: another length is a sign of another order of columns.
 Rigid3 ReadUnitPose(const JsonNode& node) {
-  constexpr double kTolerance = 1e-2;  // of numbers with 2 decimals
   Rigid3 pose = PoseOf(node);
   const std::vector<double> v = node.Numbers(7);
-  if (std::abs(std::hypot(std::hypot(v[3], v[4]), std::hypot(v[5], v[6])) - 1.0) > kTolerance) {
+  if (std::abs(std::hypot(std::hypot(v[3], v[4]), std::hypot(v[5], v[6])) - 1.0) >
+      kLengthTolerance) {
     node.Fail("tx, ty, tz, qx, qy, qz, qw with a quaternion of length 1");
   }
   return pose;
@@ -305,9 +308,111 @@ bool IsNumber(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
+// ---- Cube-Diorama
+
+constexpr size_t kClassAndPose = 8;  // columns: class tx ty tz qx qy qz qw
+
+// The row with the box of an object: three half axes, or two corners in the frame of the object.
+TrueBody ReadDioramaBox(const TextRow& row) {
+  if (row.columns.size() != kClassAndPose + 3 && row.columns.size() != kClassAndPose + 6) {
+    row.Fail(
+        fmt::format("has {} columns, expected class tx ty tz qx qy qz qw and three half axes "
+                    "or the corners xmin ymin zmin xmax ymax zmax",
+                    row.columns.size()));
+  }
+  TrueBody truth;
+  truth.label = std::string(row.columns[0]);
+  if (!IsNumber(truth.label)) {
+    row.Fail(fmt::format("the class is '{}', expected a number", ShowText(truth.label)));
+  }
+  truth.shape = ToString(BodyKind::kBox);
+  const auto vector_at = [&](size_t column, const char* name) {
+    return Eigen::Vector3d(row.Number(column, name, kMostMetres),
+                           row.Number(column + 1, name, kMostMetres),
+                           row.Number(column + 2, name, kMostMetres));
+  };
+  const Rigid3 pose(row.Rotation(7, 4, 5, 6), vector_at(1, "position"));
+  const double length = std::hypot(std::hypot(row.Number(4, "qx"), row.Number(5, "qy")),
+                                   std::hypot(row.Number(6, "qz"), row.Number(7, "qw")));
+  if (std::abs(length - 1.0) > kLengthTolerance) {
+    row.Fail(fmt::format("the quaternion has length {:g}, expected 1", length));
+  }
+  Eigen::Vector3d low = -vector_at(kClassAndPose, "half axis");
+  Eigen::Vector3d high = -low;
+  if (row.columns.size() == kClassAndPose + 6) {
+    low = -low;
+    high = vector_at(kClassAndPose + 3, "corner");
+  }
+  const Eigen::Vector3d half = 0.5 * (high - low);
+  if (half.minCoeff() <= 0.0) {
+    row.Fail(
+        "the box has a size that is 0 or negative, expected half axes > 0 or the lower corner "
+        "first");
+  }
+  truth.body = {BodyKind::kBox, pose * Rigid3(Eigen::Quaterniond::Identity(), 0.5 * (low + high)),
+                half};
+  return truth;
+}
+
+// After the box, a file has a row for each image that shows the object: its stamp, and the box in
+// the image.
+TrueBody ReadDioramaBody(const fs::path& path) {
+  std::optional<TrueBody> truth;
+  uint32_t images = 0;
+  ForEachRow(path, [&](const TextRow& row) {
+    if (!truth) {
+      truth = ReadDioramaBox(row);
+      return;
+    }
+    if (row.columns.size() != 5) {
+      row.Fail(
+          fmt::format("has {} columns, expected stamp x y height width of the object in an "
+                      "image",
+                      row.columns.size()));
+    }
+    row.Stamp(0);
+    for (size_t i = 1; i < row.columns.size(); ++i) {
+      row.Number(i, "box", kMostPixels);
+    }
+    ++images;
+  });
+  if (!truth) {
+    throw InputError(path.string() +
+                     ": has no object, expected a line with its class, pose and "
+                     "box");
+  }
+  truth->masks = images;
+  return *truth;
+}
+
+std::vector<TrueBody> ReadDioramaBodies(const fs::path& folder) {
+  std::map<uint32_t, fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".txt" && IsNumber(stem) && stem.size() < 9) {
+      files[static_cast<uint32_t>(std::stoul(stem))] = entry.path();
+    }
+  }
+  if (files.empty()) {
+    throw InputError(folder.string() +
+                     ": has no file 0.txt, 1.txt, ..., expected the folder obj_offline of a "
+                     "sequence of Cube-Diorama");
+  }
+  std::vector<TrueBody> truths;
+  for (const auto& [id, file] : files) {
+    truths.push_back(ReadDioramaBody(file));
+    truths.back().id = id;
+  }
+  return truths;
+}
+
 }  // namespace
 
 std::vector<TrueBody> ReadTrueBodies(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return ReadDioramaBodies(path);
+  }
   const nlohmann::json json = ReadJson(path);
   const JsonNode top(path, json);
   std::vector<TrueBody> truths;

@@ -109,7 +109,8 @@ int FinishSlam(const SlamRun& run, const RunResult& result) {
                             .frames = result.given,
                             .trajectory = &content.trajectory,
                             .objects = &content.objects,
-                            .live = result.live});
+                            .live = result.live,
+                            .groundtruth = &run.groundtruth});
   if (!arguments.quiet) {
     Print("{}{}results are in {}\n", DescribePriors(run.system.frames()),
           DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),

@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +31,73 @@ void HalveList(std::vector<T>& list) {
     ++kept;
   }
   list.resize(std::min(kept, list.size()));
+}
+
+double MeanEdge(const PlySurface& surface) {  // m
+  double sum = 0.0;
+  for (const TriangleMesh::Triangle& triangle : surface.triangles) {
+    sum += (surface.positions[triangle[1]] - surface.positions[triangle[0]]).norm();
+  }
+  return sum / static_cast<double>(surface.triangles.size());
+}
+
+// The surface with one vertex for all those in a cube of a grid: their mean. Triangles with two
+// corners in one cube are left out.
+PlySurface JoinInCubes(const PlySurface& surface, double side) {
+  struct Sum {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d colour = Eigen::Vector3d::Zero();
+    double count = 0.0;
+  };
+  std::map<std::array<int64_t, 3>, uint32_t> cubes;
+  std::vector<Sum> sums;
+  std::vector<uint32_t> joined;  // the vertex of the result for each of the surface
+  for (size_t i = 0; i < surface.positions.size(); ++i) {
+    const Eigen::Vector3d position = surface.positions[i].cast<double>();
+    std::array<int64_t, 3> cube{};
+    for (int axis = 0; axis < 3; ++axis) {
+      cube.at(static_cast<size_t>(axis)) = std::llround(position[axis] / side);
+    }
+    const auto [found, is_new] = cubes.try_emplace(cube, static_cast<uint32_t>(sums.size()));
+    Sum& sum = is_new ? sums.emplace_back() : sums[found->second];
+    const Colour& colour = surface.colours[i];
+    sum.position += position;
+    sum.colour += Eigen::Vector3d(colour[0], colour[1], colour[2]);
+    sum.count += 1.0;
+    joined.push_back(found->second);
+  }
+  PlySurface result;
+  for (const Sum& sum : sums) {
+    const Eigen::Vector3d colour = (sum.colour / sum.count).array().round();
+    result.positions.push_back((sum.position / sum.count).cast<float>());
+    result.colours.push_back({static_cast<uint8_t>(colour[0]), static_cast<uint8_t>(colour[1]),
+                              static_cast<uint8_t>(colour[2])});
+  }
+  for (const auto& [a, b, c] : surface.triangles) {
+    if (joined[a] != joined[b] && joined[b] != joined[c] && joined[c] != joined[a]) {
+      result.triangles.push_back({joined[a], joined[b], joined[c]});
+    }
+  }
+  return result;
+}
+
+// Makes the triangles larger, until half of them are left or fewer.
+void HalveSurface(PlySurface& surface) {
+  constexpr double kGrowth = 1.25;
+  constexpr double kLeastSide = 1e-6;  // m
+  constexpr int kMostTries = 60;
+  const size_t most = surface.triangles.size() / 2;
+  double side = surface.triangles.empty() ? 0.0 : std::max(kLeastSide, MeanEdge(surface));
+  for (int i = 0; i < kMostTries && surface.triangles.size() > most; ++i) {
+    PlySurface joined = JoinInCubes(surface, side);
+    if (joined.triangles.size() <= most) {
+      surface = std::move(joined);
+    }
+    side *= kGrowth;
+  }
+  if (surface.triangles.size() > most || surface.triangles.empty()) {
+    surface = {};
+  }
 }
 
 size_t BytesOf(const std::vector<ViewShape>& shapes) {
@@ -65,6 +136,13 @@ Part LandmarksPart(ViewLandmarks& landmarks) {
           }};
 }
 
+// A vertex with three floats and three bytes, and three numbers per triangle.
+Part SurfacePart(PlySurface& surface) {
+  return {"triangles of the surface",
+          [&] { return Base64Size(15 * surface.positions.size() + 12 * surface.triangles.size()); },
+          [&] { return surface.triangles.size(); }, [&] { HalveSurface(surface); }};
+}
+
 Part PosesPart(const char* name, Trajectory& poses) {
   return {name, [&] { return Base64Size(32 * poses.size()); }, [&] { return poses.size(); },
           [&] { HalveList(poses); }};
@@ -100,6 +178,7 @@ Part CutoutsPart(std::vector<ViewObject>& objects) {
 
 std::vector<Part> PartsOf(ViewModel& model) {
   return {LandmarksPart(model.landmarks),
+          SurfacePart(model.surface),
           PosesPart("poses of frames", model.trajectory),
           PosesPart("poses of the ground truth", model.groundtruth),
           {"pictures", [&] { return BytesOf(model.pictures); },

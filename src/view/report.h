@@ -22,10 +22,11 @@ struct Report {
 // from a run.
 Report MakeReport(const std::filesystem::path& folder, const Map& map, const SystemOptions& options,
                   const ImageSequence& sequence);
-// Whether report.html in the folder has the mark of the run whose results are there. Then it shows
-// more than the files tell.
+// Whether report.html in the folder has the mark of the run whose results are there, and shows the
+// surface of mesh.ply if there is one. Then it shows more than the files tell.
 bool HasOwnReport(const std::filesystem::path& folder);
-// The report of a finished run, of which only the files are left.
+// The report of a finished run, of which only the files are left: the one that the run has written,
+// with the surface that was made since; else what the other files tell.
 Report MakeReport(const std::filesystem::path& folder);
 // The report of a finished run or of a file of --save-map, whichever `source` is. `version` is that
 // of the program.

@@ -219,6 +219,7 @@ void SetGeometry(const ViewModel& model, double start, Json& parts) {
   set_if("camera", model.camera.has_value(), [&] { return CameraJson(*model.camera); });
   set_if("landmarks", !model.landmarks.positions.empty(),
          [&] { return LandmarksJson(model.landmarks, start); });
+  set_if("surface", !model.surface.triangles.empty(), [&] { return SurfaceJson(model.surface); });
   set_if("keyframes", !model.keyframes.poses.empty(), [&] {
     return Json{{"id", PackArray(model.keyframes.ids)},
                 {"time", PackTimes(StampsOf(model.keyframes.poses), start)},
@@ -234,6 +235,22 @@ void SetGeometry(const ViewModel& model, double start, Json& parts) {
 }
 
 }  // namespace
+
+nlohmann::json SurfaceJson(const PlySurface& surface) {
+  std::vector<float> positions;
+  std::vector<uint8_t> colours;
+  std::vector<uint32_t> corners;
+  for (size_t i = 0; i < surface.positions.size(); ++i) {
+    positions.insert(positions.end(), surface.positions[i].begin(), surface.positions[i].end());
+    colours.insert(colours.end(), surface.colours[i].begin(), surface.colours[i].end());
+  }
+  for (const TriangleMesh::Triangle& triangle : surface.triangles) {
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  }
+  return {{"position", PackArray(positions)},
+          {"colour", PackArray(colours)},
+          {"triangle", PackArray(corners)}};
+}
 
 nlohmann::json PictureJson(const ViewPicture& picture, double start) {
   return {{"time", picture.timestamp - start},

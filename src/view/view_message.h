@@ -27,6 +27,7 @@ nlohmann::json PictureJson(const ViewPicture& picture, double start);
 nlohmann::json ObjectJson(const ViewObject& object, double start);
 nlohmann::json TrajectoryJson(const Trajectory& poses, double start);
 nlohmann::json EdgesJson(const ViewEdges& edges);
+nlohmann::json SurfaceJson(const PlySurface& surface);
 // The stretches without a pose, from the content of a summary.json. Entries that are not as
 // expected are left out.
 nlohmann::json LossesJson(const nlohmann::json& summary, double start);

@@ -14,6 +14,7 @@
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/id.h"
 #include "report/object_results.h"
+#include "results/ply_file.h"
 #include "scene/scene.h"
 
 namespace hullslam {
@@ -92,6 +93,7 @@ struct ViewModel {
   std::optional<Eigen::Vector3d> up;  // unit
   std::optional<PinholeCamera> camera;
   ViewLandmarks landmarks;
+  PlySurface surface;
   ViewKeyframes keyframes;
   Trajectory trajectory;   // the frames with a pose
   Trajectory groundtruth;  // aligned to the map

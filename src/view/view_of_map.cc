@@ -13,6 +13,7 @@
 #include "map/located_landmarks.h"
 #include "objects/resolved_observation.h"
 #include "objects/validity.h"
+#include "scene/make_scene.h"
 
 namespace hullslam {
 namespace {
@@ -98,6 +99,17 @@ void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, 
       shown.reason = ReasonOf(map, *object, sensor, options);
     }
   }
+}
+
+std::map<ObjectId, SceneObject> BodiesOf(const Map& map, const PinholeCamera& camera,
+                                         const std::optional<Trajectory>& groundtruth) {
+  std::map<ObjectId, SceneObject> bodies;
+  for (SceneObject& object :
+       MakeScene(map, CollectObjectResults(map, camera), groundtruth).objects) {
+    const ObjectId id = object.id;
+    bodies[id] = std::move(object);
+  }
+  return bodies;
 }
 
 ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,10 @@ void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, 
 
 // The model of a map without a run. Its trajectory has the poses of the keyframes.
 ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& options);
+
+// The mapped objects with the boxes that the scene of a run gives them (scene/make_scene.h).
+std::map<ObjectId, SceneObject> BodiesOf(const Map& map, const PinholeCamera& camera,
+                                         const std::optional<Trajectory>& groundtruth);
 
 // The loops, and the covisibility edges with at least 100 shared landmarks, sorted: edges with
 // fewer are not in the essential graph of ORB-SLAM2 (Mur-Artal and Tardos 2017), and they would

@@ -191,11 +191,16 @@ void AddPresetOverrides(ViewModel& model) {
 
 }  // namespace
 
+void AddSurface(const FinishedRun& run, ViewModel& model) {
+  AddPart("surface", model, [&] { model.surface = run.ReadSurface().value_or(PlySurface()); });
+}
+
 ViewModel ViewOfRun(const fs::path& folder, const RunMemory& memory) {
   const FinishedRun run = OpenFinishedRun(folder);
   ViewModel model;
   AddHead(run, model);
   AddPoses(run, model);
+  AddSurface(run, model);
   AddObjects(run, model);
   if (memory.map != nullptr) {
     model.camera = memory.sensor->camera;

@@ -7,6 +7,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "results/finished_run.h"
 #include "view/view_model.h"
 
 namespace hullslam {
@@ -24,5 +25,8 @@ struct RunMemory {
 // Parts whose file is missing or broken are left out, and a note of the model says so. Throws
 // InputError if there is no summary.json or if it cannot be read.
 ViewModel ViewOfRun(const std::filesystem::path& folder, const RunMemory& memory = {});
+
+// Adds the surface that was made of the run, or a note of why it is left out.
+void AddSurface(const FinishedRun& run, ViewModel& model);
 
 }  // namespace hullslam

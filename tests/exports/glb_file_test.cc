@@ -55,7 +55,7 @@ Eigen::Quaterniond RotationOf(const Json& node) {
 TEST(Glb, HasPointsPathCamerasAndObjects) {
   const ReadGlb glb(FormatGlb(MadeExportModel(), ObjectShape::kEllipsoids));
   EXPECT_EQ(glb.json["asset"]["version"], "2.0");
-  EXPECT_EQ(glb.json["nodes"].size(), 7U) << "map, points, path, two cameras, two objects";
+  EXPECT_EQ(glb.json["nodes"].size(), 8U) << "map, points, path, two cameras, two objects, a box";
   EXPECT_EQ(glb.json["nodes"][0]["children"].size(), 6U);
   const Json& points = glb.json["meshes"][glb.Node("points")["mesh"].get<size_t>()];
   const Json& positions =
@@ -75,6 +75,35 @@ TEST(Glb, ObjectsHaveTheirClassAndShape) {
   EXPECT_EQ(cup["extras"]["class"], "cup");
   EXPECT_EQ(cup["extras"]["times_seen"], 5);
   EXPECT_NE(cup["mesh"], glb.Node("book")["mesh"]) << "each class has a colour of its own";
+}
+
+// The corners of the box in the world are those that the node of the object gives them.
+TEST(Glb, TheBoxOfAnEllipsoidIsInItsNode) {
+  const ExportModel model = MadeExportModel();
+  const SceneObject& object = model.scene.objects[0];
+  const ReadGlb glb(FormatGlb(model, ObjectShape::kEllipsoids));
+  const Json& node = glb.Node("cup");
+  EXPECT_EQ(glb.json["nodes"][node["children"][0].get<size_t>()]["name"], "cup box");
+  EXPECT_FALSE(glb.Node("book").contains("children")) << "it has no box";
+  const Json& primitive =
+      glb.json["meshes"][glb.Node("cup box")["mesh"].get<size_t>()]["primitives"][0];
+  EXPECT_EQ(primitive["mode"], 1);
+  EXPECT_EQ(glb.json["accessors"][primitive["indices"].get<size_t>()]["count"], 24);
+  const Json& positions = glb.json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+  const Json& view = glb.json["bufferViews"][positions["bufferView"].get<size_t>()];
+  const std::string bytes = glb.binary.substr(view["byteOffset"].get<size_t>());
+  ByteReader reader(bytes, "corners");
+  for (int i = 0; i < 8; ++i) {
+    const auto corner = reader.GetMatrix<Eigen::Vector3f>(100.0F);
+    Eigen::Vector3d scaled;
+    for (int axis = 0; axis < 3; ++axis) {
+      scaled[axis] = node["scale"][static_cast<size_t>(axis)].get<double>() * corner[axis];
+    }
+    const Eigen::Vector3d in_box =
+        Inverse(object.box->world_from_box) * (object.ellipsoid.world_from_object * scaled);
+    EXPECT_LT((in_box.cwiseAbs() - object.box->half_extents).norm(), 1e-6);
+  }
+  EXPECT_THROW(ReadGlb(FormatGlb(model, ObjectShape::kBoxes)).Node("cup box"), std::runtime_error);
 }
 
 TEST(Glb, YPointsUp) {

@@ -189,7 +189,13 @@ TEST(McapMessagesTest, OnlyMappedObjectsAreWritten) {
   ExpectNumbers(reader, NumbersOf(kPose));
   ExpectNumbers(reader, {0.2, 0.4, 0.6});
   EXPECT_EQ(reader.GetText(), "cup 7");
-  const std::string scene = SceneMessage({1, 2}, objects);
+  Scene boxes;
+  boxes.objects.resize(1);
+  boxes.objects[0].id = ObjectId(7);
+  const Rigid3 pose_of_box(ExpSo3({0.0, 0.0, 0.4}), {1.1, 2.0, 3.0});
+  boxes.objects[0].box = UprightBox{pose_of_box, {0.1, 0.3, 0.4}};
+  const std::string scene = SceneMessage({1, 2}, objects, boxes);
+  EXPECT_LT(SceneMessage({1, 2}, objects, {}).size(), scene.size()) << "without a box";
   FieldReader of_scene(kCdr, scene, "scene");
   EXPECT_EQ(of_scene.Get<uint32_t>(), 0u);
   ASSERT_EQ(of_scene.Get<uint32_t>(), 1u);
@@ -198,12 +204,16 @@ TEST(McapMessagesTest, OnlyMappedObjectsAreWritten) {
   EXPECT_EQ(of_scene.Get<int32_t>(), 0);
   EXPECT_EQ(of_scene.Get<uint32_t>(), 0u);
   EXPECT_EQ(of_scene.Get<uint8_t>(), 0);
-  for (const uint32_t count : {0, 0, 0, 1}) {  // metadata, arrows, cubes, spheres
+  const auto [red, green, blue] = ColourOfClass("cup");
+  for (const uint32_t count : {0, 0, 1}) {  // metadata, arrows, cubes
     EXPECT_EQ(of_scene.Get<uint32_t>(), count);
   }
+  ExpectNumbers(of_scene, NumbersOf(pose_of_box));
+  ExpectNumbers(of_scene, {0.2, 0.6, 0.8});
+  ExpectNumbers(of_scene, {red / 255.0, green / 255.0, blue / 255.0, 0.2});
+  EXPECT_EQ(of_scene.Get<uint32_t>(), 1u);  // spheres
   ExpectNumbers(of_scene, NumbersOf(kPose));
   ExpectNumbers(of_scene, {0.2, 0.4, 0.6});
-  const auto [red, green, blue] = ColourOfClass("cup");
   ExpectNumbers(of_scene, {red / 255.0, green / 255.0, blue / 255.0, 0.5});
 }
 

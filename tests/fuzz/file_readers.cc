@@ -116,6 +116,16 @@ void FuzzPlyPoints(std::string_view bytes) {
   });
 }
 
+void FuzzPlySurface(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const PlySurface surface = ReadPlySurface(path);
+    Expect(surface.positions.size() == surface.colours.size(), "one colour per position");
+    for (const TriangleMesh::Triangle& triangle : surface.triangles) {
+      Expect(std::ranges::max(triangle) < surface.positions.size(), "a corner without a position");
+    }
+  });
+}
+
 void FuzzSummary(std::string_view bytes) {
   static const InputFolder folder("summary.json");
   folder.Write(bytes);
@@ -142,12 +152,9 @@ void FuzzTrueObjects(std::string_view bytes) {
   });
 }
 
-// Also the scene_gt.json of a scene of BOP.
-void FuzzTrueBodies(std::string_view bytes) {
-  static const InputFolder folder("scene_gt.json", "scene_camera.json", "models_info.json");
-  folder.Write(bytes);
-  Try([] {
-    const std::vector<TrueBody> truths = ReadTrueBodies(folder.path() / "scene_gt.json");
+void ReadAndCheckTrueBodies(const fs::path& path) {
+  Try([&] {
+    const std::vector<TrueBody> truths = ReadTrueBodies(path);
     Expect(!truths.empty(), "no bodies");
     const Body& first = truths.front().body;
     for (const TrueBody& truth : truths) {
@@ -158,6 +165,20 @@ void FuzzTrueBodies(std::string_view bytes) {
       Expect(overlap >= 0.0 && overlap <= 1.0 && solid >= 0.0 && solid <= 1.0, "no share");
     }
   });
+}
+
+// Also the scene_gt.json of a scene of BOP.
+void FuzzTrueBodies(std::string_view bytes) {
+  static const InputFolder folder("scene_gt.json", "scene_camera.json", "models_info.json");
+  folder.Write(bytes);
+  ReadAndCheckTrueBodies(folder.path() / "scene_gt.json");
+}
+
+// A file of Cube-Diorama.
+void FuzzTrueBodyText(std::string_view bytes) {
+  static const InputFolder folder("0.txt");
+  folder.Write(bytes);
+  ReadAndCheckTrueBodies(folder.path());
 }
 
 void FuzzNpy(std::string_view bytes) {
@@ -354,8 +375,10 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"depth_image", FuzzDepthImage},
                                                        {"objects", FuzzObjects},
                                                        {"ply_points", FuzzPlyPoints},
+                                                       {"ply_surface", FuzzPlySurface},
                                                        {"true_objects", FuzzTrueObjects},
                                                        {"true_bodies", FuzzTrueBodies},
+                                                       {"true_body_text", FuzzTrueBodyText},
                                                        {"summary", FuzzSummary},
                                                        {"scene", FuzzScene},
                                                        {"npy", FuzzNpy},

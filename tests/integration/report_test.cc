@@ -64,8 +64,7 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
   ASSERT_EQ(parts["objects"].size(), objects.size());
   EXPECT_EQ(parts["objects"][0]["id"], objects[0]["id"]);
 
-  // A report of the files has the same objects, but less than that of the run, which stays. The
-  // next run replaces it.
+  // The report of the run has more than its files tell, so it stays. The next run replaces it.
   const std::string own = ReadFile(output_ / "report.html");
   const ProgramResult kept = RunProgram("hullslam view", {output_, "--report"});
   EXPECT_EQ(kept.exit_code, 0) << kept.errors;
@@ -77,8 +76,23 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
   EXPECT_EQ(again.exit_code, 0) << again.errors;
   const Json later = PartsOf(beside);
   EXPECT_EQ(later["objects"].size(), objects.size());
-  EXPECT_FALSE(later["landmarks"].contains("age"));
+  EXPECT_TRUE(later["landmarks"].contains("age"));
   EXPECT_FALSE(later["images"].empty());
+
+  // A surface that was made since is added to it.
+  const fs::path mesh = output_ / "mesh.ply";
+  const ProgramResult made =
+      RunProgram("hullslam mesh", {output_, "--output", mesh, "--voxel", "0.04", "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  for (int i = 0; i < 2; ++i) {  // the second one has nothing to do
+    EXPECT_EQ(RunProgram("hullslam view", {output_, "--report", "--quiet"}).exit_code, 0);
+    const Json with_surface = PartsOf(output_ / "report.html");
+    EXPECT_EQ(with_surface["landmarks"], parts["landmarks"]);
+    EXPECT_TRUE(with_surface["surface"].contains("triangle"));
+  }
+  fs::remove(mesh);
+  EXPECT_EQ(RunProgram("hullslam view", {output_, "--report", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(ReadFile(output_ / "report.html"), own);
 
   fs::remove(output_ / "report.html");
   for (int i = 0; i < 2; ++i) {  // a report of the files may be replaced by another one
@@ -87,6 +101,10 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
     std::ofstream(output_ / "report.html", std::ios::app) << "changed";
   }
   EXPECT_FALSE(ReadFile(output_ / "report.html").ends_with("changedchanged"));
+  folder_.Write("out/mesh.ply", "broken");
+  const ProgramResult broken = RunProgram("hullslam view", {output_, "--report", "--quiet"});
+  EXPECT_EQ(broken.exit_code, 0);
+  EXPECT_NE(broken.errors.find("surface left out: "), std::string::npos) << broken.errors;
 
   const ProgramResult of_map = RunProgram("hullslam view", {map, "--report"});
   EXPECT_EQ(of_map.exit_code, 0) << of_map.errors;
@@ -95,6 +113,7 @@ TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
 
   EXPECT_EQ(Run({"--quiet"}).exit_code, 0);
   EXPECT_FALSE(fs::exists(output_ / "report.html"));
+  EXPECT_FALSE(fs::exists(mesh));
 }
 
 // The page alone is larger than the largest file that may be written here, 800 blocks of 1 kB (or

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "scene/made_scene.h"
 #include "support/made_live.h"
 
 namespace hullslam {
@@ -99,6 +100,27 @@ TEST_F(LiveMessagesTest, TheWholeHasAllPartsAndSaysThatTheRunGoesOn) {
   const Json end = Json::parse(messages_.Whole({.phase = LivePhase::kEnded}))["set"];
   EXPECT_EQ(end["run"]["live"], false);
   EXPECT_EQ(end["summary"]["trajectory"]["ate_rmse_m"], 0.01);
+}
+
+TEST(LiveBoxes, ObjectsGetTheirBoxesWhenTheMapRests) {
+  const Sensor sensor = MakeObjectSensor();
+  LiveState state;
+  state.map = std::make_shared<const Map>(
+      MakeMapOf({Standing("book", {0.0, 0.0, 0.0}, {0.12, 0.15, 0.03})}, sensor));
+  LiveRun run;
+  run.sensor = sensor;
+  state.map->keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    run.groundtruth.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
+  });
+  LiveMessages messages(run, {});
+  const auto object_of = [](const std::optional<std::string>& change, const char* part) {
+    return Json::parse(change.value_or("{}"))[part]["objects"][0];
+  };
+  EXPECT_TRUE(object_of(messages.MapChange(state, true), "add")["body"].is_null());
+  const Json at_rest = object_of(messages.MapChange(state, true, true), "set");
+  EXPECT_NEAR(at_rest["body"]["box"]["half_extents"][2].get<double>(), 0.03, 0.01);
+  EXPECT_EQ(object_of(messages.Whole({}), "set")["body"], at_rest["body"]);
+  EXPECT_FALSE(messages.MapChange(state, true, true)) << "they are sent once";
 }
 
 TEST_F(LiveMessagesTest, GroundTruthIsAlignedToThePath) {

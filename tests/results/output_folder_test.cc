@@ -86,6 +86,7 @@ TEST_F(OutputFolderTest, AFolderNeverMixesTwoRuns) {
   Run({{"a.txt", "1"}, {"objects.json", "1"}});
   fs::copy_file(out_ / "a.txt", out_ / "run.png");  // drawn by plot_run.py
   fs::copy_file(out_ / "a.txt", out_ / "report.html");
+  fs::copy_file(out_ / "a.txt", out_ / "mesh.ply");  // made by hullslam mesh
   Run({{"a.txt", "2"}, {"b.txt", "2"}});
   EXPECT_EQ(ReadFolder(out_),
             (Files{{"a.txt", "2"}, {"b.txt", "2"}, {"summary.json", Index({"a.txt", "b.txt"})}}));

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "files/bytes.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -65,6 +66,60 @@ TEST(PlyPoints, BrokenFilesAreRefused) {
   expect_refusal(many, "cut off");
   many.replace(many.find("vertex 999999999999"), 19, "vertex 99999999999999999999999");
   expect_refusal(many, "expected a binary");
+}
+
+// Two triangles of the scene and one of an object, as FormatMeshPly() writes them.
+std::string MadeSurface(uint32_t last_corner = 4, float last_x = 1.0f) {
+  ByteWriter body;
+  for (int i = 0; i < 7; ++i) {
+    body.PutMatrix(Eigen::Vector3f(i == 6 ? last_x : 1.0f, static_cast<float>(i), 2.0f));
+    body.PutRaw("abc");
+    body.Put(i < 4 ? int32_t{-1} : int32_t{7});
+  }
+  for (const std::array<uint32_t, 3>& face :
+       {std::array{0U, 1U, 2U}, {1U, 2U, 3U}, {last_corner, 5U, 6U}}) {
+    body.Put(uint8_t{3});
+    for (const uint32_t corner : face) {
+      body.Put(corner);
+    }
+  }
+  return "ply\nformat binary_little_endian 1.0\nelement vertex 7\nproperty float x\n"
+         "property float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nproperty int object\nelement face 3\n"
+         "property list uchar int vertex_indices\nend_header\n" +
+         body.bytes();
+}
+
+TEST(PlySurface, IsTheSceneWithoutItsObjects) {
+  const TemporaryFolder folder;
+  const PlySurface surface = ReadPlySurface(folder.Write("mesh.ply", MadeSurface()));
+  ASSERT_EQ(surface.positions.size(), 4u);
+  EXPECT_EQ(surface.positions[3], Eigen::Vector3f(1.0f, 3.0f, 2.0f));
+  EXPECT_EQ(surface.colours[0], (Colour{'a', 'b', 'c'}));
+  using Triangles = std::vector<TriangleMesh::Triangle>;
+  EXPECT_EQ(surface.triangles, (Triangles{{0, 1, 2}, {1, 2, 3}}));
+}
+
+TEST(PlySurface, BrokenFilesAreRefused) {
+  const TemporaryFolder folder;
+  const auto expect_refusal = [&](const std::string& content, const char* reason) {
+    const auto path = folder.Write("mesh.ply", content);
+    ExpectInputError([&] { ReadPlySurface(path); }, {"mesh.ply", reason});
+  };
+  const std::string good = MadeSurface();
+  expect_refusal("", "hullslam mesh");
+  expect_refusal(FormatMapPly(kLandmarks, kCentres), "hullslam mesh");
+  expect_refusal(good.substr(0, good.size() - 1), "fewer faces");
+  expect_refusal(good.substr(0, good.size() - 100), "fewer vertices");
+  expect_refusal(good + "x", "after its end");
+  expect_refusal(MadeSurface(7), "no vertex");
+  expect_refusal(MadeSurface(4, std::numeric_limits<float>::quiet_NaN()), "not finite");
+  std::string many = good;
+  many.replace(many.find("face 3"), 6, "face 4294967295");
+  expect_refusal(many, "fewer faces");
+  std::string square = good;
+  square[square.size() - 13] = 4;
+  expect_refusal(square, "no triangle");
 }
 
 TEST(PlyWriter, ReadsBackWhatItWrote) {

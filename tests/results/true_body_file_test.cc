@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "hullslam/util/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -120,6 +121,57 @@ TEST(TrueBodyFile, ReadsWhatMakeSyntheticWrites) {
   EXPECT_EQ(truths[2].body.kind, BodyKind::kBox);
   EXPECT_EQ(truths[2].shape, "compound");
   EXPECT_EQ(truths[2].masks, 20U);
+}
+
+constexpr const char* kCup =
+    "#class tx ty tz qx qy qz qw a1 a2 a3\n41 1 2 3 0 0 0.70710678 0.70710678 0.1 0.2 0.3\n"
+    "#stamp x y h w\n0.1 10 20 30 40\n0.2 11 21 31 41\n";
+
+TEST(TrueBodyFile, ReadsAFolderOfCubeDiorama) {
+  const TemporaryFolder folder;
+  folder.Write("obj_offline/0.txt", kCup);
+  folder.Write("obj_offline/10.txt", "# corners\n73 0 0 1 0 0 1 0 -0.1 -0.2 0 0.3 0.2 0.05\n");
+  folder.Write("obj_offline/notes.md", "not read");
+  const std::vector<TrueBody> truths = ReadTrueBodies(folder.path() / "obj_offline");
+  ASSERT_EQ(truths.size(), 2U);
+  EXPECT_EQ(truths[0].id, 0U);
+  EXPECT_EQ(truths[0].label, "41");
+  EXPECT_EQ(truths[0].masks, 2U);
+  EXPECT_EQ(truths[0].body.kind, BodyKind::kBox);
+  EXPECT_EQ(truths[0].body.half_axes, Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(truths[0].body.world_from_body.translation, Vector3d(1, 2, 3));
+  EXPECT_TRUE((truths[0].body.world_from_body.rotation * Vector3d::UnitX())
+                  .isApprox(Vector3d::UnitY(), 1e-7));
+  EXPECT_EQ(truths[1].id, 10U);
+  EXPECT_EQ(truths[1].masks, 0U);
+  EXPECT_TRUE(truths[1].body.half_axes.isApprox(Vector3d(0.2, 0.2, 0.025), 1e-12));
+  // Half a turn about z: the middle of the corners, (0.1, 0, 0.025), is at -x.
+  EXPECT_TRUE(truths[1].body.world_from_body.translation.isApprox(Vector3d(-0.1, 0, 1.025), 1e-12));
+}
+
+TEST(TrueBodyFile, BadFilesOfCubeDioramaAreNamed) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& text, const std::vector<std::string>& parts) {
+    folder.Write("obj/3.txt", text);
+    ExpectInputError([&] { ReadTrueBodies(folder.path() / "obj"); }, parts);
+  };
+  const auto with = [](const std::string& old, const std::string& fresh) {
+    std::string text = kCup;
+    return text.replace(text.find(old), old.size(), fresh);
+  };
+  EXPECT_THROW(ReadTrueBodies(folder.path()), InputError) << "no file with a number";
+  expect("", {"3.txt"});
+  expect("# only a comment\n", {"3.txt: has no object"});
+  expect(with(" 0.3\n", "\n"), {"3.txt:2", "10 columns", "three half axes"});
+  expect(with("0.1 0.2", "0 0.2"), {"3.txt:2", "0 or negative"});
+  expect(with("0.1 0.2", "-0.1 0.2"), {"3.txt:2", "0 or negative"});
+  expect("41 0 0 0 0 0 0 1 0.1 0.1 0.1 -0.1 0.2 0.2\n", {"3.txt:1", "lower corner first"});
+  expect(with("41 1", "cup 1"), {"3.txt:2", "the class is 'cup'"});
+  expect(with("0.70710678 0.70710678", "0.7 0.1"), {"3.txt:2", "length"});
+  expect(with(" 2 3 ", " nan 3 "), {"3.txt:2", "position"});
+  expect(with(" 2 3 ", " 1e9 3 "), {"3.txt:2", "position"});
+  expect(with("30 40\n", "30\n"), {"3.txt:4", "4 columns", "stamp x y height width"});
+  expect(with("30 40\n", "30 x\n"), {"3.txt:4", "box"});
 }
 
 // A scene of BOP: two boxes of one model and one of another, in two images. The camera of the

@@ -143,6 +143,20 @@ class ReportPage(unittest.TestCase):
         after = page.canvas()
         self.assertLess(browser.count_colours(after), browser.count_colours(before) / 2)
 
+    def test_a_mesh_of_the_run_is_a_layer(self):
+        mesh, report = self.run_folder / "mesh.ply", self.folder / "surface.html"
+        program("hullslam mesh", self.run_folder, "--output", mesh, "--voxel", 0.03, "--quiet")
+        program("hullslam view", self.run_folder, "--report", "--output", report, "--quiet")
+        mesh.unlink()
+        page = self.open(report)
+        self.expect_good(page)
+        before = page.canvas()
+        page.run("document.querySelector('[data-layer=surface]').click()")
+        page.draw()
+        changed = np.abs(page.canvas() - before).max(axis=2) > 0.05
+        self.assertGreater(changed.mean(), 0.05)
+        self.assertIn("age", page.run("return Object.keys(window.hullslam.store.parts.landmarks)"))
+
     def test_the_row_of_layers_is_whole_and_a_colouring_has_a_legend(self):
         page = self.open(self.run_folder / "report.html")
         for width in (1400, 390):

@@ -57,6 +57,9 @@ inline ViewModel MadeView(size_t count, const std::string& label = "cup") {
     model.landmarks.created.push_back(pose.timestamp);
   }
   model.landmarks.total = count;
+  model.surface = {.positions = {{0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {0.0f, 1.0f, 1.0f}},
+                   .colours = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}},
+                   .triangles = {{0, 1, 2}}};
   model.objects.push_back({MadeSphere(7, label), {}, {}});
   model.edges.covisibility = {{0, 1}};
   model.pictures.push_back({.timestamp = 101.0,

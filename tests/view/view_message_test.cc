@@ -33,6 +33,8 @@ TEST(ViewMessage, HasTheKeysOfTheFormat) {
   EXPECT_EQ(parts["camera"]["fx"], 100.0);
   EXPECT_EQ(parts["trajectory"]["time"], PackArray(std::vector<float>{0.0f, 1.0f, 2.0f}));
   EXPECT_EQ(parts["landmarks"]["total"], 3);
+  EXPECT_EQ(parts["surface"]["triangle"], PackArray(std::vector<uint32_t>{0, 1, 2}));
+  EXPECT_EQ(parts["surface"]["colour"], PackArray(std::vector<uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
   EXPECT_EQ(parts["landmarks"]["colour"],
             PackArray(std::vector<uint8_t>{255, 0, 1, 255, 0, 1, 255, 0, 1}));
   EXPECT_EQ(parts["keyframes"]["id"], PackArray(std::vector<uint32_t>{0, 1, 2}));

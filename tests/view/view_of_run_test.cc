@@ -118,6 +118,11 @@ TEST_F(ViewOfRunTest, RelationsAndBoxesComeFromTheScene) {
   EXPECT_TRUE(HasNote(ViewOfRun(folder_.path()), "relations left out: "));
 }
 
+TEST_F(ViewOfRunTest, ABrokenSurfaceIsLeftOutAndNamed) {
+  folder_.Write("mesh.ply", "ply\n");
+  EXPECT_TRUE(HasNote(ViewOfRun(folder_.path()), "surface left out: "));
+}
+
 TEST_F(ViewOfRunTest, BrokenFilesAreLeftOutAndNamed) {
   folder_.Write("trajectory.txt", "1 nan 0 0 0 0 0 1\n");
   folder_.Write("map.ply", "ply\n");

@@ -237,9 +237,10 @@ void AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
   CLI::App* const command =
       app.add_subcommand("objects", "how well the objects of a run fit their masks or the truth");
   command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
-  command->add_option("--truth", arguments.truth,
-                      "true boxes and ellipsoids: a list, groundtruth_objects.json of "
-                      "make_synthetic, or scene_gt.json of BOP (default: none)");
+  command->add_option(
+      "--truth", arguments.truth,
+      "true boxes and ellipsoids: a list, groundtruth_objects.json of make_synthetic, "
+      "scene_gt.json of BOP, or obj_offline of Cube-Diorama (default: none)");
   command->add_option(
       "--groundtruth", arguments.groundtruth,
       "with --truth: the true trajectory (default: groundtruth.txt beside that file "

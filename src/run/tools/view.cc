@@ -30,10 +30,8 @@ void WritePage(const ViewArguments& arguments, const std::string& page) {
       arguments.output.empty() ? DefaultReportPath(arguments.input) : arguments.output;
   if (arguments.output.empty() && HasOwnReport(arguments.input)) {
     if (!arguments.quiet) {
-      Print(
-          "{}: the run has written this report, which shows more than its files tell; it stays "
-          "(--output FILE writes another one)\n",
-          output.string());
+      Print("{}: this report of the run is complete; it stays (--output FILE writes a copy)\n",
+            output.string());
     }
     return;
   }
