@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -83,10 +84,9 @@ class Finder {
       candidate.estimate.cam_from_world = hypothesis.cam_from_world;
       candidate.arrangement = Compare(hypothesis.cam_from_world);
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) {
-                       return a.arrangement.Score() > b.arrangement.Score();
-                     });
+    std::ranges::stable_sort(candidates, std::greater(), [](const Candidate& candidate) {
+      return candidate.arrangement.Score();
+    });
     return candidates;
   }
 
@@ -251,18 +251,11 @@ class Finder {
 
   // The candidate with the best score. Null if there is none, or if another place is about as good.
   const Candidate* FindBest(const std::vector<Candidate>& candidates) const {
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : candidates) {
-      if (best == nullptr || candidate.Score() > best->Score()) {
-        best = &candidate;
-      }
-    }
-    const bool is_ambiguous =
-        best != nullptr &&
-        std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-          return other.Score() >= kAmbiguousShare * best->Score() && !AreSame(*best, other);
-        });
-    return is_ambiguous ? nullptr : best;
+    const auto best = std::ranges::max_element(candidates, {}, &Candidate::Score);
+    const auto is_rival = [&](const Candidate& other) {
+      return other.Score() >= kAmbiguousShare * best->Score() && !AreSame(*best, other);
+    };
+    return candidates.empty() || std::ranges::any_of(candidates, is_rival) ? nullptr : &*best;
   }
 
   // Whether enough landmarks or enough objects agree with the pose.

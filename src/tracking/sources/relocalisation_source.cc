@@ -3,7 +3,9 @@
 #include <utility>
 #include <vector>
 
+#include "map/islands.h"
 #include "map/keyframe_graph.h"
+#include "objects/pose_hypotheses.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
 #include "tracking/sources/confirmed_pose.h"
@@ -14,6 +16,8 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMostPlaces = 8;  // largest number of places that are tried for a frame
+// If another place has this share of the inliers of the best one, the frame is ambiguous.
+constexpr double kRivalShare = 0.75;
 
 // The keyframes that look like the frame, one per place.
 std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {
@@ -59,17 +63,30 @@ std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& 
   if (!context.options.relocalise_by_words || !has_words) {
     return std::nullopt;
   }
+  std::optional<PoseEstimate> best;
+  KeyframeId best_keyframe;
   for (const KeyframeId keyframe : FindPlaces(frame, map)) {
     std::optional<PoseEstimate> estimate = PoseByWords(frame, map, context, keyframe);
     if (!estimate || estimate->inliers < context.min_start_inliers()) {
       continue;
     }
     *estimate = SeeWholePlace(frame, map, context, keyframe, std::move(*estimate));
-    if (estimate->inliers >= context.min_relocalisation_inliers()) {
-      return estimate;
+    if (estimate->inliers < context.min_relocalisation_inliers()) {
+      continue;
+    }
+    const bool is_elsewhere =
+        best && IslandOf(map, keyframe) == IslandOf(map, best_keyframe) &&
+        !AreSamePlace(best->cam_from_world, estimate->cam_from_world, best->median_depth);
+    const auto [fewer, more] = std::minmax({estimate->inliers, best ? best->inliers : 0});
+    if (is_elsewhere && fewer >= kRivalShare * more) {
+      return std::nullopt;
+    }
+    if (!best || (is_elsewhere && estimate->inliers > best->inliers)) {
+      best = std::move(estimate);
+      best_keyframe = keyframe;
     }
   }
-  return std::nullopt;
+  return best;
 }
 
 }  // namespace hullslam
