@@ -25,14 +25,12 @@ namespace {
 constexpr size_t kMostRefined = 6;     // number of hypotheses that are refined
 constexpr size_t kMostObservers = 30;  // number of keyframes whose landmarks are searched
 constexpr int kRounds = 2;             // rounds of matching and refinement with objects alone
-constexpr float kWideRadius =
-    25.0f;  // px at level 0; the pose from objects is wrong by centimetres
+constexpr float kWideRadius = 25.0f;   // px at level 0; poses from objects err by centimetres
 constexpr double kWideRatio = 0.8;
 constexpr double kLeastMeanOverlap = 0.5;  // least mean overlap of the objects that confirm a pose
 // Hypotheses with a smaller share of the best score of objects are dropped.
 constexpr double kWorthyShare = 0.5;
-constexpr int kMostSamples =
-    200;  // samples of RANSAC; few suffice, because most landmarks agree with a true pose
+constexpr int kMostSamples = 200;  // of RANSAC; most landmarks agree with a true pose
 // If a second candidate reaches this share of the best score, the frame is ambiguous.
 constexpr double kAmbiguousShare = 0.75;
 
