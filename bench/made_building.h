@@ -35,13 +35,17 @@ class MadeBuilding {
   static constexpr size_t kRooms = 20;
   static constexpr double kGapEvery = 200.0;  // s
 
-  // The robot works for `seconds`. `vocabulary` may be null.
-  MadeBuilding(double seconds, const Sensor& sensor, const Vocabulary* vocabulary)
+  // The robot works for `seconds`. `vocabulary` may be null. If nothing changes, the objects stay
+  // where they are and it is always day. With another `seed` it is another
+  // building, which has nothing in common with the first one but the kinds of its objects.
+  MadeBuilding(double seconds, const Sensor& sensor, const Vocabulary* vocabulary,
+               bool is_unchanged = false, uint64_t seed = 100)
       : sensor_(sensor),
         vocabulary_(vocabulary),
+        seed_(seed),
         seconds_(seconds),
-        day_(std::min(3600.0, seconds / 3.0)),
-        move_every_(std::min(600.0, seconds / 8.0)) {
+        day_(is_unchanged ? 1e9 : std::min(3600.0, seconds / 3.0)),
+        move_every_(is_unchanged ? 1e9 : std::min(600.0, seconds / 8.0)) {
     for (size_t room = 0; room < kRooms; ++room) {
       AddRoom(room);
     }
@@ -72,6 +76,21 @@ class MadeBuilding {
                                  radius * std::cos(angle));
     const Eigen::Quaterniond rotation(Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitY()));
     return {rotation, -(rotation * center)};
+  }
+
+  // Whether nothing but the wall of room 5 or 15 is in the image at this time, so it cannot tell
+  // which of the two it shows.
+  bool ShowsOnlyATwin(double time) const {
+    const Rigid3 cam_from_world = CamFromWorld(time);
+    const auto room_at = [&](double column) {
+      const double slope = (column - sensor_.camera.cx) / sensor_.camera.fx;
+      const Eigen::Vector3d at_wall = Inverse(cam_from_world) * (WallDepth(cam_from_world, slope) *
+                                                                 Eigen::Vector3d(slope, 0.0, 1.0));
+      const double angle = std::atan2(at_wall.x(), at_wall.z()) / (2.0 * std::numbers::pi);
+      return static_cast<size_t>(kRooms * (angle < 0.0 ? angle + 1.0 : angle));
+    };
+    const size_t room = room_at(sensor_.bounds.min_x);
+    return (room == 5 || room == 15) && room_at(sensor_.bounds.max_x) == room;
   }
 
   // The image at this time, whose random errors follow from its number.
@@ -143,7 +162,7 @@ class MadeBuilding {
   }
 
   void AddRoom(size_t room) {
-    std::mt19937_64 random(100 + (room == 15 ? 5 : room));
+    std::mt19937_64 random(seed_ + (room == 15 ? 5 : room));
     const auto number = [&random](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
@@ -387,6 +406,7 @@ class MadeBuilding {
 
   const Sensor& sensor_;
   const Vocabulary* const vocabulary_;
+  const uint64_t seed_;  // of the rooms
   const double seconds_;
   const double day_;           // s, of daylight and lamplight together
   const double move_every_;    // s; after four of these times each movable object is elsewhere

@@ -5,7 +5,10 @@
 //
 // With --hours it is a robot that works in one building (MadeBuilding), and each hour has a line.
 // Times of frames are processor times of the thread that calls Track: in the sequential pipeline
-// with mapping, with --threaded without.
+// with mapping, with --threaded without. With --kidnapped N the camera is afterwards put N times at
+// a place where the robot comes later: where nothing but one of the two equal rooms is in the
+// image, in another building, or anywhere on its way. It is counted how often its place is found
+// within half a second by single images, and how often a wrong one.
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -22,6 +25,7 @@
 #include <fstream>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <random>
 #include <set>
 #include <string>
 #include <string_view>
@@ -31,6 +35,7 @@
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/system/relocaliser.h"
 #include "hullslam/system/system.h"
 #include "live/live_view.h"
 #include "made_building.h"
@@ -212,6 +217,17 @@ struct Shift {
   double hours = 10.0;
   PipelineKind kind = PipelineKind::kSequential;
   int max_keyframes = 0;
+  bool is_unchanged = false;  // objects stay where they are, and the light is the same
+  size_t kidnapped = 0;
+};
+
+// What became of a camera that was put at places of one kind.
+struct Kidnapped {
+  size_t tries = 0;
+  size_t found = 0;
+  size_t wrong = 0;
+  size_t frames = 0;
+  double spent_ms = 0.0;
 };
 
 // A robot at work, and what is known about it so far.
@@ -221,7 +237,7 @@ class Patrol {
       : shift_(shift),
         vocabulary_(std::make_shared<const Vocabulary>(ReadVocabulary(FindDefaultVocabulary()))),
         sensor_(BenchSensor()),
-        building_(3600.0 * shift.hours, sensor_, vocabulary_.get()),
+        building_(3600.0 * shift.hours, sensor_, vocabulary_.get(), shift.is_unchanged),
         system_(Options(), shift.kind) {}
 
   void Run() {
@@ -243,6 +259,9 @@ class Patrol {
       }
     }
     Judge(seconds);
+    if (shift_.kidnapped > 0) {
+      Kidnap();
+    }
   }
 
  private:
@@ -392,6 +411,59 @@ class Patrol {
         peak_mb_ / map_mb_, map_mb_, save_s_);
   }
 
+  // Puts the camera at a place, and asks for its pose with one image after the other.
+  void PutAt(const MadeBuilding& building, const Relocaliser& relocaliser, double time,
+             uint32_t number, Kidnapped& outcome) const {
+    constexpr uint32_t kImages = 15;  // of half a second
+    constexpr double kFar = 0.3;      // m
+    ++outcome.tries;
+    for (uint32_t i = 0; i < kImages; ++i) {
+      const double now = time + i / sensor_.frames_per_second;
+      const std::unique_ptr<Frame> frame = building.MakeFrame(now, number + i);
+      frame->id = FrameId(number + i);
+      const double start = ThreadMs();
+      const auto found = relocaliser.Find(*frame);
+      outcome.spent_ms += ThreadMs() - start;
+      ++outcome.frames;
+      if (found) {
+        const Eigen::Vector3d center = truth_from_map_ * Inverse(found->cam_from_world).translation;
+        const double error = (center - Inverse(building.CamFromWorld(now)).translation).norm();
+        ++(&building == &building_ && error < kFar ? outcome.found : outcome.wrong);
+        return;
+      }
+    }
+  }
+
+  void Kidnap() const {
+    const double seconds = 3600.0 * shift_.hours;
+    const MadeBuilding elsewhere(seconds, sensor_, vocabulary_.get(), false, 1000);
+    const Relocaliser relocaliser(system_.options(), system_.map());
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> later(seconds, 2.0 * seconds);
+    std::array<Kidnapped, 3> outcomes;
+    for (size_t i = 0; i < shift_.kidnapped; ++i) {
+      // Of ten places one is in another building and one in a room that the map has twice.
+      double time = later(random);
+      while (i % 10 == 1 && !building_.ShowsOnlyATwin(time)) {
+        time = later(random);
+      }
+      const size_t kind = i % 10 == 0 ? 2 : building_.ShowsOnlyATwin(time) ? 1 : 0;
+      PutAt(kind == 2 ? elsewhere : building_, relocaliser, time,
+            static_cast<uint32_t>(100'000'000 + 15 * i), outcomes[kind]);
+    }
+    constexpr std::array kNames = {"on its way", "only an equal room", "another building"};
+    fmt::print("{:>20} {:>7} {:>9} {:>7} {:>10} {:>14}\n", "kidnapped", "tries", "found, %",
+               "wrong", "images/try", "ms per image");
+    for (size_t kind = 0; kind < outcomes.size(); ++kind) {
+      const Kidnapped& outcome = outcomes[kind];
+      const auto tries = static_cast<double>(std::max<size_t>(1, outcome.tries));
+      const auto frames = static_cast<double>(outcome.frames);
+      fmt::print("{:>20} {:>7} {:>9.2f} {:>7} {:>10.2f} {:>14.2f}\n", kNames[kind], outcome.tries,
+                 100.0 * static_cast<double>(outcome.found) / tries, outcome.wrong, frames / tries,
+                 outcome.spent_ms / std::max(1.0, frames));
+    }
+  }
+
   const Shift shift_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   const std::shared_ptr<const Vocabulary> vocabulary_;
@@ -419,9 +491,15 @@ int main(int argc, char** argv) {
   size_t turn = 0;
   int port = -1;
   hullslam::Shift shift{.hours = 0.0};
-  if (argc > 1 && std::string_view(argv[argc - 1]) == "--threaded") {
-    shift.kind = hullslam::PipelineKind::kThreaded;
-    --argc;
+  for (; argc > 1; --argc) {
+    const std::string_view last = argv[argc - 1];
+    if (last == "--threaded") {
+      shift.kind = hullslam::PipelineKind::kThreaded;
+    } else if (last == "--unchanged") {
+      shift.is_unchanged = true;
+    } else {
+      break;
+    }
   }
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::string_view(argv[i]) == "--frames") {
@@ -434,6 +512,8 @@ int main(int argc, char** argv) {
       shift.hours = std::strtod(argv[i + 1], nullptr);
     } else if (std::string_view(argv[i]) == "--max-keyframes") {
       shift.max_keyframes = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
+    } else if (std::string_view(argv[i]) == "--kidnapped") {
+      shift.kidnapped = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
     } else {
       frames = 0;
     }
@@ -443,7 +523,8 @@ int main(int argc, char** argv) {
     fmt::print(
         stderr,
         "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
-        "       scale_bench --hours H [--max-keyframes N] [--threaded]\n"
+        "       scale_bench --hours H [--kidnapped N] [--max-keyframes N] [--unchanged] "
+        "[--threaded]\n"
         "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
         "frames\n");
     return 2;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -206,13 +205,14 @@ std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
   }
   const Map& map = *system.map();
   size_t mapped = 0;
-  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+  for (const auto& [id, object] : map.objects()) {
     mapped += object.state == ObjectState::kMapped ? 1 : 0;
-  });
+  }
   Print("map of frames {} to {}: {} keyframes, {} landmarks, {} objects; ATE RMSE {:.4f} m\n",
         range.first, range.last, map.keyframes().size(), map.landmarks().size(), mapped,
         ate.errors.rmse);
-  return MadeMap{system.map(), ate.reference_from_estimate};
+  return MadeMap{system.map(), AlignWithRotations(inputs.groundtruth, system.trajectory(),
+                                                  ate.reference_from_estimate)};
 }
 
 // Looks for a frame in the map.
@@ -222,7 +222,7 @@ QueryResult RunQuery(const RelocaliseInputs& inputs, const MadeMap& made,
   const Rigid3 truth =
       InterpolatePose(inputs.groundtruth, inputs.sequence.frames[frame].timestamp, kMaxPoseGap)
           .value();
-  return Relocalise(relocaliser, *built.frame, made.truth_from_map, truth);
+  return Relocalise(relocaliser, *made.map, *built.frame, made.truth_from_map, truth);
 }
 
 }  // namespace

@@ -61,6 +61,13 @@ bool IsContradicted(const Frame& frame, const Map& map, const TrackingContext& c
   return agreement.past > kMostPast * agreement.compared();
 }
 
+// Whether neither landmarks nor objects alone confirm a pose that objects began. Landmarks were
+// searched near it, so some agree by chance: up to 27 with wrong poses from shifted masks.
+bool IsConfirmedByHalves(const TrackingContext& context, const PoseEstimate& estimate) {
+  return estimate.inliers < context.min_relocalisation_inliers() &&
+         PoseEstimate::kLandmarksPerObject * estimate.used_objects < context.options.min_inliers;
+}
+
 // Whether pairs of images do not confirm a pose among images that are far apart. Without depth
 // nothing but the landmarks has been compared, and few of these may agree with a wrong pose.
 bool IsDoubted(const Frame& frame, const Map& map, const TrackingContext& context,
@@ -114,6 +121,7 @@ PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingC
       continue;
     }
     const bool is_certain = start->EffectiveInliers() >= context.min_relocalisation_inliers();
+    const bool is_by_objects = start->keyframe_of_place.IsValid() && !context.is_wide;
     const KeyframeId near =
         start->keyframe_of_place.IsValid() ? start->keyframe_of_place : last.reference;
     LocalTracking tracking = TrackLocalMap(frame, map, context, near, std::move(*start));
@@ -122,6 +130,7 @@ PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingC
     if (inliers < context.options.min_inliers ||
         tracking.estimate.corner_sigma > kMostCornerSigma ||
         (context.is_wide && CanBeChance(frame, map, context, tracking)) ||
+        (is_by_objects && IsConfirmedByHalves(context, tracking.estimate)) ||
         (is_new_place && IsContradicted(frame, map, context, tracking)) ||
         IsDoubted(frame, map, context, tracking)) {
       search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);

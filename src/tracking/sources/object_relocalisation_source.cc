@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -24,14 +25,12 @@ namespace {
 constexpr size_t kMostRefined = 6;     // number of hypotheses that are refined
 constexpr size_t kMostObservers = 30;  // number of keyframes whose landmarks are searched
 constexpr int kRounds = 2;             // rounds of matching and refinement with objects alone
-constexpr float kWideRadius =
-    25.0f;  // px at level 0; the pose from objects is wrong by centimetres
+constexpr float kWideRadius = 25.0f;   // px at level 0; poses from objects err by centimetres
 constexpr double kWideRatio = 0.8;
 constexpr double kLeastMeanOverlap = 0.5;  // least mean overlap of the objects that confirm a pose
 // Hypotheses with a smaller share of the best score of objects are dropped.
 constexpr double kWorthyShare = 0.5;
-constexpr int kMostSamples =
-    200;  // samples of RANSAC; few suffice, because most landmarks agree with a true pose
+constexpr int kMostSamples = 200;  // of RANSAC; most landmarks agree with a true pose
 // If a second candidate reaches this share of the best score, the frame is ambiguous.
 constexpr double kAmbiguousShare = 0.75;
 
@@ -83,10 +82,9 @@ class Finder {
       candidate.estimate.cam_from_world = hypothesis.cam_from_world;
       candidate.arrangement = Compare(hypothesis.cam_from_world);
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) {
-                       return a.arrangement.Score() > b.arrangement.Score();
-                     });
+    std::ranges::stable_sort(candidates, std::greater(), [](const Candidate& candidate) {
+      return candidate.arrangement.Score();
+    });
     return candidates;
   }
 
@@ -251,18 +249,11 @@ class Finder {
 
   // The candidate with the best score. Null if there is none, or if another place is about as good.
   const Candidate* FindBest(const std::vector<Candidate>& candidates) const {
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : candidates) {
-      if (best == nullptr || candidate.Score() > best->Score()) {
-        best = &candidate;
-      }
-    }
-    const bool is_ambiguous =
-        best != nullptr &&
-        std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-          return other.Score() >= kAmbiguousShare * best->Score() && !AreSame(*best, other);
-        });
-    return is_ambiguous ? nullptr : best;
+    const auto best = std::ranges::max_element(candidates, {}, &Candidate::Score);
+    const auto is_rival = [&](const Candidate& other) {
+      return other.Score() >= kAmbiguousShare * best->Score() && !AreSame(*best, other);
+    };
+    return candidates.empty() || std::ranges::any_of(candidates, is_rival) ? nullptr : &*best;
   }
 
   // Whether enough landmarks or enough objects agree with the pose.

@@ -30,8 +30,9 @@ PoseSource PoseByMotionModel;
 PoseSource PoseByReferenceKeyframe;
 
 // Keyframes that look like the frame by their words give matches with their landmarks, from which
-// RANSAC finds a pose; then all landmarks of that place are searched. The last frame is not used
-// (Mur-Artal and Tardos 2017; relocalisation_source.cc).
+// RANSAC finds a pose; then all landmarks of that place are searched. Null if another place of the
+// island explains the frame about as well. The last frame is not used (Mur-Artal and Tardos 2017;
+// relocalisation_source.cc).
 PoseSource PoseByRelocalisation;
 
 // The arrangement of the mapped objects in the frame gives a pose, and hull lines and landmarks

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
+#include "map/islands.h"
 #include "map/keyframe_graph.h"
+#include "objects/pose_hypotheses.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
 #include "tracking/sources/confirmed_pose.h"
@@ -14,6 +17,9 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMostPlaces = 8;  // largest number of places that are tried for a frame
+// If another place has this share of the inliers, the frame is ambiguous. In other light two in
+// five points of the same place look different.
+constexpr double kRivalShare = 0.5;
 
 // The keyframes that look like the frame, one per place.
 std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {
@@ -22,13 +28,6 @@ std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {
   std::vector<KeyframeId> places = BestOfPlaces(map, similar);
   places.resize(std::min(places.size(), kMostPlaces));
   return places;
-}
-
-// The pose from matches by words with the landmarks of one keyframe. Null if too few agree.
-std::optional<PoseEstimate> PoseByWords(const Frame& frame, const Map& map,
-                                        const TrackingContext& context, KeyframeId keyframe) {
-  return PoseOfMatches(frame, map, context, MatchLandmarksByWords(map, frame, keyframe, {}),
-                       context.min_reference_matches(), "relocalisation");
 }
 
 // Adds landmarks of the place that are seen from the estimated pose, and refines the pose.
@@ -50,6 +49,46 @@ PoseEstimate SeeWholePlace(const Frame& frame, const Map& map, const TrackingCon
   return RefinePose(frame, map, context, {}, std::move(estimate));
 }
 
+// The pose at the place of a keyframe, from matches by words with its landmarks first. Null if too
+// few landmarks agree.
+std::optional<PoseEstimate> PoseAt(const Frame& frame, const Map& map,
+                                   const TrackingContext& context, KeyframeId keyframe) {
+  std::optional<PoseEstimate> estimate =
+      PoseOfMatches(frame, map, context, MatchLandmarksByWords(map, frame, keyframe, {}),
+                    context.min_reference_matches(), "relocalisation");
+  if (!estimate || estimate->inliers < context.min_start_inliers()) {
+    return std::nullopt;
+  }
+  return SeeWholePlace(frame, map, context, keyframe, std::move(*estimate));
+}
+
+// Whether another place of the island explains the frame about as well.
+bool HasRival(const Frame& frame, const Map& map, const TrackingContext& context,
+              KeyframeId keyframe, const PoseEstimate& found) {
+  const auto is_elsewhere = [&](const Rigid3& pose) {
+    return !AreSamePlace(found.cam_from_world, pose, found.median_depth);
+  };
+  std::vector<KeyframeId> covered = PlaceOf(map, keyframe);
+  size_t tried = 0;
+  for (const SimilarKeyframe& similar : map.index().Query(map.VectorOf(frame))) {
+    const KeyframeId other = similar.keyframe;
+    if (std::ranges::count(covered, other) > 0 || IslandOf(map, other) != IslandOf(map, keyframe) ||
+        !is_elsewhere(map.keyframes().At(other).cam_from_world)) {
+      continue;
+    }
+    const auto rival = PoseAt(frame, map, context, other);
+    if (rival && is_elsewhere(rival->cam_from_world) &&
+        rival->inliers >= kRivalShare * found.inliers) {
+      return true;
+    }
+    if (++tried == kMostPlaces) {
+      break;
+    }
+    std::ranges::copy(PlaceOf(map, other), std::back_inserter(covered));
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& map,
@@ -60,13 +99,9 @@ std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& 
     return std::nullopt;
   }
   for (const KeyframeId keyframe : FindPlaces(frame, map)) {
-    std::optional<PoseEstimate> estimate = PoseByWords(frame, map, context, keyframe);
-    if (!estimate || estimate->inliers < context.min_start_inliers()) {
-      continue;
-    }
-    *estimate = SeeWholePlace(frame, map, context, keyframe, std::move(*estimate));
-    if (estimate->inliers >= context.min_relocalisation_inliers()) {
-      return estimate;
+    std::optional<PoseEstimate> estimate = PoseAt(frame, map, context, keyframe);
+    if (estimate && estimate->inliers >= context.min_relocalisation_inliers()) {
+      return HasRival(frame, map, context, keyframe, *estimate) ? std::nullopt : estimate;
     }
   }
   return std::nullopt;

@@ -108,6 +108,20 @@ TEST_F(ConfirmedPoseTest, ACertainStartAfterAnUncertainOneMustBeBetter) {
   EXPECT_EQ(Search().found->source, 0u);
 }
 
+// Near a pose from objects some landmarks agree by chance. As many are needed as by words, unless
+// the objects alone are enough.
+TEST_F(ConfirmedPoseTest, AStartFromObjectsNeedsMoreLandmarks) {
+  TheScript().first = Start(0.0, 50);
+  const int found = Search().found->tracking.estimate.inliers;
+  TheScript().first->keyframe_of_place = KeyframeId(0);
+  options_.min_inliers = found * 3 / 5 - 1;
+  EXPECT_TRUE(Search().found);
+  options_.min_inliers = found * 4 / 5;
+  EXPECT_FALSE(Search().found);
+  TheScript().first->keyframe_of_place = KeyframeId();
+  EXPECT_TRUE(Search().found);
+}
+
 // If the camera has drifted, the pose of the old place does not fit to the last frame. A loop must
 // correct the drift; a jump of the camera to the old place would hide it.
 TEST(ConfirmedPose, AFrameThatIsTrackedIsNotRelocalised) {

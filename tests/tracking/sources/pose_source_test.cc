@@ -231,6 +231,19 @@ TEST_F(Relocalisation, DoesNotFindAPlaceThatTheMapLacks) {
   EXPECT_FALSE(Find(frame));
 }
 
+// The last turn of this map is mapped again with a drift. With a small one both poses are at one
+// place.
+TEST_F(Relocalisation, AnswersNothingIfTwoPlacesLookAlike) {
+  const auto find = [&](double drift) {
+    const RingMap twice = MakeRingMap(
+        world_,
+        {.keyframes = 30, .drift = Rigid3(Eigen::Quaterniond::Identity(), {drift, 0.0, 0.0})});
+    return Find(*Look(0.1).frame, twice.map);
+  };
+  EXPECT_TRUE(find(0.05));
+  EXPECT_FALSE(find(30.0));
+}
+
 TEST_F(Relocalisation, NeedsWordsOfFrameAndMap) {
   Frame frame = *Look(0.3).frame;
   EXPECT_TRUE(Find(frame));
