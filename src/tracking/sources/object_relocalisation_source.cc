@@ -287,7 +287,10 @@ std::optional<PoseEstimate> PoseByObjects(const Frame& frame, const Map& map,
       best = std::move(found);
     }
   }
-  return best;
+  // In equal rooms objects that were moved since would decide.
+  const bool has_rival = best && best->median_depth > 0.0 &&
+                         HasRival(frame, map, context, best->keyframe_of_place, *best);
+  return has_rival ? std::nullopt : best;
 }
 
 }  // namespace hullslam

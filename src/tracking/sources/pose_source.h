@@ -47,6 +47,11 @@ PoseSource PoseByObjects;
 // used (wide_match_source.cc).
 PoseSource PoseByWideMatches;
 
+// Whether words find another place of the keyframe's island that explains the frame about as well
+// as the pose that was found near this keyframe (relocalisation_source.cc).
+bool HasRival(const Frame& frame, const Map& map, const TrackingContext& context,
+              KeyframeId keyframe, const PoseEstimate& found);
+
 // All sources, in the order in which they are asked.
 inline constexpr std::array<PoseSource*, 4> kPoseSources = {
     &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation, &PoseByObjects};

@@ -62,9 +62,18 @@ std::optional<PoseEstimate> PoseAt(const Frame& frame, const Map& map,
   return SeeWholePlace(frame, map, context, keyframe, std::move(*estimate));
 }
 
-// Whether another place of the island explains the frame about as well.
+bool HasWords(const Frame& frame, const Map& map, const TrackingContext& context) {
+  return context.options.relocalise_by_words && map.vocabulary() != nullptr &&
+         !frame.words.is_absent();
+}
+
+}  // namespace
+
 bool HasRival(const Frame& frame, const Map& map, const TrackingContext& context,
               KeyframeId keyframe, const PoseEstimate& found) {
+  if (!HasWords(frame, map, context)) {
+    return false;
+  }
   const auto is_elsewhere = [&](const Rigid3& pose) {
     return !AreSamePlace(found.cam_from_world, pose, found.median_depth);
   };
@@ -89,13 +98,10 @@ bool HasRival(const Frame& frame, const Map& map, const TrackingContext& context
   return false;
 }
 
-}  // namespace
-
 std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& map,
                                                  const TrackingContext& context,
                                                  const LastFrame& /*last*/) {
-  const bool has_words = map.vocabulary() != nullptr && !frame.words.is_absent();
-  if (!context.options.relocalise_by_words || !has_words) {
+  if (!HasWords(frame, map, context)) {
     return std::nullopt;
   }
   for (const KeyframeId keyframe : FindPlaces(frame, map)) {

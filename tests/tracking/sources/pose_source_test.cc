@@ -244,6 +244,23 @@ TEST_F(Relocalisation, AnswersNothingIfTwoPlacesLookAlike) {
   EXPECT_FALSE(find(30.0));
 }
 
+// Also a pose that objects have found must not be one of several.
+TEST_F(Relocalisation, APoseHasARivalIfAnotherPlaceLooksTheSame) {
+  const Frame frame = *Look(0.1).frame;
+  const PoseEstimate found = *Find(frame);
+  const auto has_rival = [&](double drift) {
+    const RingMap map = MakeRingMap(
+        world_,
+        {.keyframes = 30, .drift = Rigid3(Eigen::Quaterniond::Identity(), {drift, 0.0, 0.0})});
+    return HasRival(frame, map.map, {world_.sensor(), options_, objects_, index_, 1}, KeyframeId(0),
+                    found);
+  };
+  EXPECT_FALSE(has_rival(0.05));
+  EXPECT_TRUE(has_rival(30.0));
+  options_.relocalise_by_words = false;
+  EXPECT_FALSE(has_rival(30.0));
+}
+
 TEST_F(Relocalisation, NeedsWordsOfFrameAndMap) {
   Frame frame = *Look(0.3).frame;
   EXPECT_TRUE(Find(frame));
