@@ -53,8 +53,8 @@ struct ObjectResult {
   std::vector<ObservationResult> observations;  // by increasing keyframe id
   ObjectFit fit;
 
-  // For tables: the class, after the name if there is one.
-  std::string Title() const { return name.empty() ? label : name + " (" + label + ")"; }
+  // The name, if there is one, after two blanks: for the end of a line of a table.
+  std::string NameAtEnd() const { return name.empty() ? name : "  " + name; }
 };
 
 // The largest angle between the rays from the cameras of the observations to the centre, degrees.

@@ -99,8 +99,8 @@ TEST(ObjectFile, NamesAndLocksAreWrittenWhereThereAreAny) {
   EXPECT_EQ(json["objects"][1]["locked"], true);
   folder.Write("objects_observations.json", FormatObservations(report));
   const ObjectResults read = ReadObjects(folder.Write("objects.json", text));
-  EXPECT_EQ(read.objects[0].Title(), "cup");
-  EXPECT_EQ(read.objects[1].Title(), "Lisa's (cup)");
+  EXPECT_EQ(read.objects[0].NameAtEnd(), "");
+  EXPECT_EQ(read.objects[1].NameAtEnd(), "  Lisa's");
   EXPECT_TRUE(read.objects[1].is_locked);
 }
 
