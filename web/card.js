@@ -66,14 +66,14 @@ export class Card {
       html('p', { class: 'hint' }, 'Click an ellipsoid or a line. The number is the quality, from 0 to 1.'),
       html('ul', { class: 'list' }, mapped.map((object) => html('li', {},
         html('button', { type: 'button', onclick: () => this.onChoose(object.id) },
-          this.swatch(object.class), html('span', {}, `${object.class} ${object.id}`),
+          this.swatch(object.class), html('span', {}, `${object.name || object.class} ${object.id}`),
           html('span', {}, number(object.quality))))))];
   }
 
   object(object) {
     const votes = Object.entries(object.votes || {}).sort((a, b) => b[1] - a[1]);
     const parts = [
-      html('h2', {}, this.swatch(object.class), html('span', {}, `${object.class} ${object.id}`),
+      html('h2', {}, this.swatch(object.class), html('span', {}, `${object.name || object.class} ${object.id}`),
         html('button', { type: 'button', class: 'quiet', onclick: () => this.onChoose(null) },
           'All objects')),
       this.factsOf(object)];

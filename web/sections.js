@@ -63,7 +63,7 @@ function objectTable(store, onChoose) {
     { title: 'Overlap' }, { title: 'Misfit' }];
   return table(columns, objects.map((object) => ({ onclick: () => onChoose(object.id), cells: [
     html('span', {}, html('i', { class: 'swatch', style: `background:${colourOfClass(object.class)};`
-      + 'margin-right:8px' }), `${object.class} ${object.id}`),
+      + 'margin-right:8px' }), `${object.name || object.class} ${object.id}`),
     object.state === 'mapped' ? 'mapped'
       : `not mapped${object.reason ? `: ${words(object.reason)}` : ''}`,
     number(object.quality), sizeText(object, store.unit()), freeText(object) || '–',

@@ -386,7 +386,7 @@ export class View {
   }
 
   labelOf(object) {
-    const text = `${object.class} ${object.id}`;
+    const text = `${object.name || object.class} ${object.id}`;
     let label = this.labels.get(object.id);
     if (!label || label.text !== text) {
       if (label) {

@@ -292,6 +292,12 @@ class MapObject:
     def label(self) -> str:
         """The class with most votes."""
     @property
+    def name(self) -> str:
+        """The name by System.name_object(), '' if there is none."""
+    @property
+    def is_locked(self) -> bool:
+        """Whether System.lock_object() has locked it."""
+    @property
     def votes(self) -> dict[str, float]:
         """The sum of the scores of each class."""
     @property
@@ -545,6 +551,21 @@ class System:
         most 2 s of time stamps later. If they show an object that is not mapped and no
         keyframe with masks is near in time, it becomes a keyframe unless it is one. Returns
         False for a frame that awaits no masks (any more).
+        """
+    def name_object(self, id: int, name: str) -> None:
+        """Gives an object of the map (MapObject.id) a name of at most 100 bytes of UTF-8, which
+        saved maps keep; '' removes it. May be called between two frames, also with a loaded
+        map and with `localization`; with threads, the map shows it a little later. Raises
+        InputError after finish(), for an unknown object and for another name.
+        """
+    def lock_object(self, id: int, locked: bool = True) -> None:
+        """Locks an object: it keeps its shape, its place relative to the world around it and
+        its id, whatever is seen; a candidate is mapped first. May be called and raises as
+        name_object().
+        """
+    def delete_object(self, id: int) -> None:
+        """Removes an object and its observations. Later masks of the thing may be mapped as a
+        new object. May be called and raises as name_object().
         """
     def finish(self) -> None:
         """Waits until all keyframes are in the map, adjusts the whole map, and computes the

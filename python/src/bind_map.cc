@@ -194,6 +194,12 @@ void BindObject(py::module_& module) {
           "label", [](const MapObject& o) { return std::string(o.object.Label()); },
           "The class with most votes.")
       .def_property_readonly(
+          "name", [](const MapObject& o) { return o.object.name; },
+          "The name by System.name_object(), '' if there is none.")
+      .def_property_readonly(
+          "is_locked", [](const MapObject& o) { return o.object.is_locked; },
+          "Whether System.lock_object() has locked it.")
+      .def_property_readonly(
           "votes", [](const MapObject& o) { return o.object.votes; },
           "The sum of the scores of each class.")
       .def_property_readonly(

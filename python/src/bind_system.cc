@@ -147,6 +147,19 @@ bool AddMasks(LiveSystem& system, int64_t frame, const MaskList& masks) {
   return WithoutGil([&] { return system.AddMasks(frame, masks.masks); });
 }
 
+void NameObject(LiveSystem& system, int64_t id, const std::string& name) {
+  WithoutGil([&] { system.EditObject(id, [&](System& s, ObjectId o) { s.NameObject(o, name); }); });
+}
+
+void LockObject(LiveSystem& system, int64_t id, bool locked) {
+  WithoutGil(
+      [&] { system.EditObject(id, [&](System& s, ObjectId o) { s.LockObject(o, locked); }); });
+}
+
+void DeleteObject(LiveSystem& system, int64_t id) {
+  WithoutGil([&] { system.EditObject(id, [](System& s, ObjectId o) { s.DeleteObject(o); }); });
+}
+
 // Signals such as Ctrl+C's are kept until the call returns, which they make return early.
 void Finish(LiveSystem& system) {
   bool is_interrupted = false;
@@ -297,6 +310,18 @@ void BindSystem(py::module_& module) {
            "most 2 s of time stamps later. If they show an object that is not mapped and no\n"
            "keyframe with masks is near in time, it becomes a keyframe unless it is one. Returns\n"
            "False for a frame that awaits no masks (any more).")
+      .def("name_object", &NameObject, py::arg("id"), py::arg("name"),
+           "Gives an object of the map (MapObject.id) a name of at most 100 bytes of UTF-8, which\n"
+           "saved maps keep; '' removes it. May be called between two frames, also with a loaded\n"
+           "map and with `localization`; with threads, the map shows it a little later. Raises\n"
+           "InputError after finish(), for an unknown object and for another name.")
+      .def("lock_object", &LockObject, py::arg("id"), py::arg("locked") = true,
+           "Locks an object: it keeps its shape, its place relative to the world around it and\n"
+           "its id, whatever is seen; a candidate is mapped first. May be called and raises as\n"
+           "name_object().")
+      .def("delete_object", &DeleteObject, py::arg("id"),
+           "Removes an object and its observations. Later masks of the thing may be mapped as a\n"
+           "new object. May be called and raises as name_object().")
       .def("finish", &Finish,
            "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
            "poses of all frames again. Ctrl+C ends it early.")

@@ -208,6 +208,17 @@ void LiveSystem::MakeMasks(LateMasks::Pace pace, LateMasks::Maker make) {
   late_masks_ = std::make_unique<LateMasks>(pace, std::move(make), Open());
 }
 
+ObjectId LiveSystem::IdOfObject(int64_t object) const {
+  if (is_finished_) {
+    throw InputError("an object was changed after finish(); reset() begins a new run");
+  }
+  if (object < 0 || object >= std::numeric_limits<uint32_t>::max()) {
+    throw InputError("the map has no object " + std::to_string(object) +
+                     "; expected an id of map.objects");
+  }
+  return ObjectId(static_cast<uint32_t>(object));
+}
+
 bool LiveSystem::AddMasks(int64_t frame, std::vector<InstanceMask> masks) {
   const std::lock_guard lock(mutex_);
   System& system = Open();

@@ -55,6 +55,14 @@ class LiveSystem {
   // Throws InputError after Finish(), and otherwise as System::AddMasks does.
   bool AddMasks(int64_t frame, std::vector<InstanceMask> masks);
 
+  // Calls `edit(System&, ObjectId)`. Throws InputError after Finish() and for an id that is none.
+  template <typename Function>
+  void EditObject(int64_t object, const Function& edit) {
+    const std::lock_guard lock(mutex_);
+    System& system = Open();
+    edit(system, IdOfObject(object));
+  }
+
   // Calls `read(const System&)`.
   template <typename Read>
   auto Get(const Read& read) const {
@@ -69,6 +77,7 @@ class LiveSystem {
 
  private:
   System& Open() const;
+  ObjectId IdOfObject(int64_t object) const;
   void Begin(SystemStart start);
 
   const SystemOptions options_;

@@ -236,10 +236,16 @@ void MergeLandmarks(Map& map, const MapCorrection& correction, const ScaleLevels
 std::vector<ObjectId> MergeObjects(Map& map, const MapCorrection& correction) {
   std::vector<ObjectId> merged;
   for (const MapCorrection::ObjectMerge& merge : correction.objects) {
-    const ObjectId duplicate = map.Resolve(merge.duplicate);
-    const ObjectId kept = map.Resolve(merge.kept);
+    ObjectId duplicate = map.Resolve(merge.duplicate);
+    ObjectId kept = map.Resolve(merge.kept);
     if (!duplicate.IsValid() || !kept.IsValid() || duplicate == kept) {
       continue;
+    }
+    if (map.objects().At(duplicate).IsFixed()) {
+      std::swap(duplicate, kept);
+    }
+    if (map.objects().At(duplicate).IsFixed()) {
+      continue;  // both are
     }
     map.ReplaceObject(duplicate, kept);
     merged.push_back(kept);
@@ -247,8 +253,10 @@ std::vector<ObjectId> MergeObjects(Map& map, const MapCorrection& correction) {
   merged = ResolveAll(map, std::move(merged));
   for (const ObjectId id : merged) {
     ObjectLandmark& object = map.MutableObject(id);
-    object.state = ObjectState::kCandidate;
-    object.shaped_views = 0;
+    if (!object.IsFixed()) {
+      object.state = ObjectState::kCandidate;
+      object.shaped_views = 0;
+    }
   }
   return merged;
 }

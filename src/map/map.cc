@@ -234,6 +234,8 @@ void Map::ReplaceObject(ObjectId object, ObjectId by) {
   ObjectLandmark& changed = objects_.Mutable(by);
   changed.visible += old.visible;
   changed.found += old.found;
+  changed.name = changed.name.empty() ? old.name : changed.name;
+  changed.is_locked |= old.is_locked;
   replaced_objects_.Add(object, by, revision_);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "hullslam/util/check.h"
+#include "util/text.h"
 
 namespace hullslam {
 
@@ -12,6 +13,11 @@ const std::string& ObjectLandmark::Label() const {
   return std::max_element(votes.begin(), votes.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
+}
+
+bool ObjectLandmark::IsName(std::string_view text) {
+  constexpr size_t kMostBytes = 100;
+  return text.size() <= kMostBytes && text == Printable(text);
 }
 
 }  // namespace hullslam

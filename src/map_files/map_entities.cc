@@ -122,6 +122,9 @@ std::vector<MisfitSample> ReadSamples(ByteReader& in) {
   return samples;
 }
 
+// The bits of the first byte of an object. Its name comes last, if it has one.
+enum ObjectBits : uint8_t { kMappedBit = 1, kNamedBit = 2, kLockedBit = 4, kAllBits = 7 };
+
 }  // namespace
 
 void WritePose(const Rigid3& pose, ByteWriter& out) {
@@ -231,7 +234,9 @@ void ReadLandmark(const MapHeader& header, ByteReader& in, MapTables& tables) {
 
 void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
   out.Put(id.value);
-  out.PutFlag(object.state == ObjectState::kMapped);
+  out.Put(static_cast<uint8_t>((object.state == ObjectState::kMapped ? kMappedBit : 0) |
+                               (object.name.empty() ? 0 : kNamedBit) |
+                               (object.is_locked ? kLockedBit : 0)));
   out.PutFlag(object.has_shape);
   WriteEllipsoid(object.ellipsoid, out);
   WriteEllipsoid(object.start, out);
@@ -243,6 +248,9 @@ void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
   WriteSamples(object.misfit_samples, out);
   PutTimes(object.visible, out);
   PutTimes(object.found, out);
+  if (!object.name.empty()) {
+    out.PutText(object.name);
+  }
 }
 
 void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
@@ -250,7 +258,10 @@ void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
   in.Require(!(id < tables.objects.NextId()) && id.value < header.next_object,
              "has an id that is out of order");
   ObjectLandmark object;
-  object.state = in.GetFlag() ? ObjectState::kMapped : ObjectState::kCandidate;
+  const auto bits = in.Get<uint8_t>();
+  in.Require(bits <= kAllBits, "has a state that is none");
+  object.state = (bits & kMappedBit) != 0 ? ObjectState::kMapped : ObjectState::kCandidate;
+  object.is_locked = (bits & kLockedBit) != 0;
   object.has_shape = in.GetFlag();
   object.ellipsoid = ReadEllipsoid(in);
   object.start = ReadEllipsoid(in);
@@ -262,6 +273,11 @@ void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
   object.misfit_samples = ReadSamples(in);
   object.visible = ReadTimes(in);
   object.found = ReadTimes(in);
+  if ((bits & kNamedBit) != 0) {
+    object.name = in.GetText();
+    in.Require(!object.name.empty() && ObjectLandmark::IsName(object.name),
+               "has a name that is empty, too long or not printable UTF-8");
+  }
   tables.objects.Put(id, std::move(object));
 }
 

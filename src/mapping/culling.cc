@@ -229,7 +229,8 @@ bool IsNewDirection(const Map& map, KeyframeId id, const ObjectLandmark& object)
   });
 }
 
-// Whether an object has few views, or none but this one from a direction if `directions_count`.
+// Whether an object has few views (a locked one its last), or none but this one from a direction if
+// `directions_count`.
 bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views,
                         bool directions_count = true) {
   return std::ranges::any_of(map.keyframes().At(id).objects, [&](ObjectId observed) {
@@ -237,7 +238,7 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views,
       return false;
     }
     const ObjectLandmark& object = map.objects().At(observed);
-    return object.observations.size() <= min_views ||
+    return object.observations.size() <= std::max<size_t>(min_views, object.IsFixed() ? 1 : 0) ||
            (directions_count && IsNewDirection(map, id, object));
   });
 }
@@ -286,8 +287,9 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
     if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
         !JoinsItsNeighbours(map, candidate.keyframe, rules.min_shared) &&
-        !(rules.keeps_object_views &&
-          IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
+        !IsNeededByAnObject(map, candidate.keyframe,
+                            rules.keeps_object_views ? min_object_views : 0,
+                            rules.keeps_object_views)) {
       map.CullKeyframe(candidate.keyframe);
       ++culled;
     }

@@ -151,6 +151,21 @@ bool Mapper::Apply(const LateDetections& late, const Cancellation* hurry) {
   return request && Apply(*request, hurry);
 }
 
+bool Mapper::Apply(const ObjectEdit& edit, const Cancellation*) {
+  const ObjectId id = map_.Resolve(edit.object);
+  if (!id.IsValid()) {
+    return false;
+  }
+  ObjectLandmark& object = map_.MutableObject(id);
+  object.name = edit.name.value_or(object.name);
+  object.is_locked = edit.is_locked.value_or(object.is_locked);
+  if (edit.is_deleted) {
+    map_.EraseObject(id);
+  }
+  PublishSnapshot();
+  return true;
+}
+
 bool Mapper::AddLate(KeyframeId keyframe, const LateDetections& late) {
   if (!AddLateDetections(map_, sensor_, keyframe, late)) {
     return false;

@@ -40,9 +40,9 @@ class Mapper {
   void Begin(Map map, Session session);
 
   // Processes a message. `hurry` (may be null) is requested while an urgent message waits: any but
-  // late detections. The mapper then leaves out the steps that are not necessary. An initial map
-  // becomes a new island if the map is not empty. Returns false for a correction that was dropped,
-  // because the map was corrected since the snapshot.
+  // late detections and edits of objects. The mapper then leaves out the steps that are not
+  // necessary. An initial map becomes a new island if the map is not empty. Returns false for a
+  // correction that was dropped, because the map was corrected since the snapshot.
   bool Process(const MapMessage& message, const Cancellation* hurry);
 
   // From now on, a keyframe without detections awaits them in a LateDetections, and says nothing
@@ -94,6 +94,7 @@ class Mapper {
   bool Apply(const KeyframeRequest& request, const Cancellation* hurry);
   bool Apply(const MapCorrection& correction, const Cancellation* hurry);
   bool Apply(const LateDetections& late, const Cancellation* hurry);
+  bool Apply(const ObjectEdit& edit, const Cancellation* hurry);
   bool AddLate(KeyframeId keyframe, const LateDetections& late);
   void BeginSession();
   std::vector<ChangedObject> FindChanges(const std::set<ObjectId>& left) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "frame/detection/visible_part.h"
 #include "geometry/polygon.h"
@@ -121,7 +122,8 @@ bool ShowsMostly(const Map& map, const Sensor& sensor, const ObjectLandmark& obj
 
 bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
             const FusionOptions& options) {
-  if (!a.has_shape || !b.has_shape || !AreNear(a.ellipsoid, b.ellipsoid)) {
+  if (!a.has_shape || !b.has_shape || (a.IsFixed() && b.IsFixed()) ||
+      !AreNear(a.ellipsoid, b.ellipsoid)) {
     return false;
   }
   const size_t shared = SharedKeyframes(a, b);
@@ -177,12 +179,11 @@ std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
 }  // namespace
 
 std::pair<ObjectId, ObjectId> KeptFirst(const Map& map, ObjectId a, ObjectId b) {
-  const bool a_is_earlier = map.IsOfEarlierSession(a);
-  const bool keep_a =
-      a_is_earlier != map.IsOfEarlierSession(b)
-          ? a_is_earlier
-          : map.objects().At(a).observations.size() >= map.objects().At(b).observations.size();
-  return keep_a ? std::pair(a, b) : std::pair(b, a);
+  const auto rank = [&](ObjectId id) {
+    const ObjectLandmark& object = map.objects().At(id);
+    return std::tuple(object.IsFixed(), map.IsOfEarlierSession(id), object.observations.size());
+  };
+  return rank(a) >= rank(b) ? std::pair(a, b) : std::pair(b, a);
 }
 
 std::optional<ObjectId> FindDoubled(const Map& map, const Sensor& sensor, ObjectId candidate,

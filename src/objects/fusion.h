@@ -12,15 +12,15 @@
 
 namespace hullslam {
 
-// The two objects, first the one to keep if they are copies of one thing: the one of an earlier
-// session, of which later changes are reported, or the one with more observations.
+// The two objects, first the one to keep if they are copies of one thing: a locked one, the one of
+// an earlier session, of which later changes are reported, or the one with more observations.
 std::pair<ObjectId, ObjectId> KeptFirst(const Map& map, ObjectId a, ObjectId b);
 
 // Pairs of objects of one island that are copies of one thing, in the order of KeptFirst. Two
-// objects form a pair if few or no keyframes observe both and their quadrics overlap enough. For
-// objects that no keyframe observes together, it is also enough that each quadric contains the
-// centre of the other and the t-test finds no difference between their centroids. Each object is in
-// at most one pair.
+// objects, not both locked, form a pair if few or no keyframes observe both and their quadrics
+// overlap enough. For objects that no keyframe observes together, it is also enough that each
+// quadric contains the centre of the other and the t-test finds no difference between their
+// centroids. Each object is in at most one pair.
 std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
                                                           const FusionOptions& options = {});
 // The same, but only pairs with at least one of the objects `changed` (by increasing id).

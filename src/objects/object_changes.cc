@@ -181,7 +181,9 @@ class Comparison {
     changed.former = {id, sought.ellipsoid};
     const Looks present = Look(earlier_, {now, true}, sought);
     const Looks later = WithoutHidden(Look(later_, {now, true}, sought), SurfaceOf(present));
-    const bool is_gone = left_.contains(id) || HasLeft(later, present);
+    const ObjectLandmark* const kept = map_.objects().Find(now);
+    const bool is_gone =
+        (kept == nullptr || !kept->IsFixed()) && (left_.contains(id) || HasLeft(later, present));
     changed.expected = later.expected;
     changed.found = later.found;
     changed.change = is_gone           ? ObjectChange::kGone

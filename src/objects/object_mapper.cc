@@ -93,8 +93,9 @@ std::optional<Objection> ObjectionToStart(const Map& map, const Sensor& sensor, 
 // The object that is kept takes the shape of the duplicate if that has more observations.
 void ReplaceDuplicate(Map& map, ObjectId duplicate, ObjectId kept) {
   const ObjectLandmark before = map.objects().At(duplicate);
-  const bool is_better =
-      before.has_shape && before.observations.size() > map.objects().At(kept).observations.size();
+  const ObjectLandmark& other = map.objects().At(kept);
+  const bool is_better = before.has_shape && !other.IsFixed() &&
+                         before.observations.size() > other.observations.size();
   map.ReplaceObject(duplicate, kept);
   if (is_better) {
     ObjectLandmark& changed = map.MutableObject(kept);
@@ -194,11 +195,11 @@ Objection ObjectMapper::FewKeyframes(const ObjectLandmark& object) const {
 void ObjectMapper::Update(Map& map, ObjectId id, Copies copies) {
   changed_.push_back(id);
   const ObjectLandmark& object = map.objects().At(id);
-  if (object.observations.size() < NeededKeyframes(object)) {
+  if (!object.IsFixed() && object.observations.size() < NeededKeyframes(object)) {
     Reject(map, id, FewKeyframes(object));
     return;
   }
-  if (!IsDue(object)) {
+  if (object.IsFixed() || !IsDue(object)) {
     return;
   }
   map.MutableObject(id).shaped_views = object.observations.size();
@@ -305,7 +306,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
   changed_.insert(changed_.end(), objects.begin(), objects.end());
   for (const ObjectId id : objects) {
     const ObjectLandmark* object = map.objects().Find(id);
-    if (object == nullptr || object->state != ObjectState::kMapped) {
+    if (object == nullptr || object->state != ObjectState::kMapped || object->IsFixed()) {
       continue;
     }
     if (object->observations.size() < NeededKeyframes(*object)) {
@@ -395,6 +396,9 @@ std::optional<Objection> ObjectMapper::ReasonToCull(const Map& map, KeyframeId k
                                                     ObjectId id) {
   const CullingOptions& culling = options_.culling;
   const ObjectLandmark& object = map.objects().At(id);
+  if (object.IsFixed()) {
+    return std::nullopt;
+  }
   const auto seldom = [](std::string why) {
     return Objection{ObjectRejection::kSeldomSeen, std::move(why)};
   };

@@ -18,7 +18,8 @@ namespace hullslam {
 class ObjectIndex;
 
 // Maps objects from one keyframe after the other: association, initialisation, refinement, checks
-// of validity, fusion and culling. It changes no pose and no landmark.
+// of validity, fusion and culling. It changes no pose, no landmark and no shape that a user has
+// locked (ObjectLandmark::IsFixed).
 class ObjectMapper {
  public:
   // `sensor` must outlive the mapper.

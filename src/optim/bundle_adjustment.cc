@@ -181,7 +181,7 @@ class Bundle {
     ceres::Solver::Options solver;
     // If there are objects, Ceres eliminates their half axes.
     solver.linear_solver_type =
-        window_.objects.empty() ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
+        objects_.HasMoving() ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
     return Run(problem, solver, 0, iterations, supervision, result);
   }
 
@@ -227,7 +227,7 @@ class Bundle {
     // residuals of objects are far less linear than those of points. Without this, the solver could
     // only take short steps, and slow changes of the whole map, such as the correction of its scale
     // after a loop, would not finish.
-    if (!window_.objects.empty()) {
+    if (objects_.HasMoving()) {
       solver.use_inner_iterations = true;
       solver.inner_iteration_tolerance = options_.function_tolerance;
       solver.inner_iteration_ordering = objects_.OrderAlone();
@@ -331,6 +331,9 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
   const BundleOptions options = rules.is_solved_precisely ? given.ForMonocular() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
+  // Locked objects are constant, so they hold the scale.
+  bool is_scale_free = std::ranges::none_of(
+      window.objects, [&](ObjectId id) { return map.objects().At(id).IsFixed(); });
   BundleResult result = Adjust(map, sensor, window, options, supervision);
   if (!result.is_usable && !window.objects.empty()) {
     BundleWindow points_only = window;
@@ -338,8 +341,9 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     Supervision again(cancellation, on_progress, most);
     result = Adjust(map, sensor, points_only, options, again);
     result.failed_objects = window.objects;
+    is_scale_free = true;
   }
-  if (rules.keeps_scale && result.is_usable && window.fixed.size() == 1) {
+  if (rules.keeps_scale && is_scale_free && result.is_usable && window.fixed.size() == 1) {
     KeepScale(map, window.fixed.front(), result);
   }
   return result;

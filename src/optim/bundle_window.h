@@ -14,7 +14,7 @@ struct BundleWindow {
   std::vector<KeyframeId> moving;
   std::vector<KeyframeId> fixed;  // other keyframes that observe the landmarks
   std::vector<LandmarkId> landmarks;
-  std::vector<ObjectId> objects;  // their quadrics are optimised; all of them have a shape
+  std::vector<ObjectId> objects;  // all have a shape, which is optimised unless locked
 };
 
 // The window around the keyframe `center`. The moving keyframes are `center` and those that share

@@ -50,6 +50,7 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id, const PoseIndices& pos
   const ObjectLandmark& landmark = map.objects().At(id);
   Object& object = objects_.emplace_back();
   object.id = id;
+  object.is_fixed = landmark.IsFixed();
   object.before = landmark.ellipsoid;
   object.pose = ToBlock(landmark.ellipsoid.world_from_object);
   object.log_axes = landmark.ellipsoid.half_axes.array().log();
@@ -125,6 +126,10 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
   // they stay in the order of the vector. With blocks of two vectors the order would depend on
   // where these are in memory, and results would differ from run to run.
   for (Object& object : objects_) {
+    if (object.is_fixed) {
+      problem.SetParameterBlockConstant(object.pose.data());
+      problem.SetParameterBlockConstant(object.log_axes.data());
+    }
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);
     ordering.AddElementToGroup(object.log_axes.data(), axes_group);
@@ -134,11 +139,15 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
 std::shared_ptr<ceres::ParameterBlockOrdering> ObjectBundle::OrderAlone() {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (Object& object : objects_) {
-    ordering->AddElementToGroup(object.pose.data(), 0);
-    ordering->AddElementToGroup(object.log_axes.data(), 1);
+    if (!object.is_fixed) {
+      ordering->AddElementToGroup(object.pose.data(), 0);
+      ordering->AddElementToGroup(object.log_axes.data(), 1);
+    }
   }
   return ordering;
 }
+
+bool ObjectBundle::HasMoving() const { return !std::ranges::all_of(objects_, &Object::is_fixed); }
 
 bool ObjectBundle::HasUndefinedObservation() const {
   return std::any_of(objects_.begin(), objects_.end(),
@@ -181,6 +190,9 @@ void ObjectBundle::Write(const std::vector<PoseBlock>& poses, BundleResult& resu
     const Object& object = objects_[i];
     Ellipsoid after{FromBlock(object.pose.data()), object.log_axes.array().exp()};
     after.world_from_object.rotation.normalize();
+    if (object.is_fixed) {
+      continue;
+    }
     if (IsPlausible(after, object.before, options_.max_axis_change) &&
         IsDefinedEverywhere(i, poses)) {
       result.ellipsoids.emplace_back(object.id, after);

@@ -43,6 +43,8 @@ class ObjectBundle {
                      ceres::ParameterBlockOrdering& ordering);
   // The order of a step in which only the objects move: first their poses, then their half axes.
   std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
+  // Whether there is an object that is not locked. The locked ones are constant.
+  bool HasMoving() const;
 
   // Returns whether an observation was undefined at the last evaluation. A quadric that reaches the
   // plane of a camera has no projected ellipse there, so the cost of this observation is undefined,
@@ -62,6 +64,7 @@ class ObjectBundle {
     Ellipsoid before;
     PoseBlock pose{};  // world_from_object
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
+    bool is_fixed = false;   // ObjectLandmark::IsFixed
     bool has_depth = false;  // whether an observation has depth points on it
     // The prior and the observations from keyframes that do not move.
     std::unique_ptr<ObjectSumCost> fixed_part;

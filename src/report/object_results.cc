@@ -36,6 +36,8 @@ ObjectResult ResultOfObject(const Map& map, ObjectId id, const ObjectLandmark& o
   reported.votes = object.votes;
   reported.ellipsoid = object.ellipsoid;
   reported.misfit_px = object.misfit_px;
+  reported.name = object.name;
+  reported.is_locked = object.is_locked;
   for (const ObjectObservation& observation : object.observations) {
     reported.observations.push_back(ResultOfObservation(map, observation));
   }

@@ -48,8 +48,13 @@ struct ObjectResult {
   std::map<std::string, double> votes;  // sum of scores by class
   Ellipsoid ellipsoid;                  // world frame
   double misfit_px = 0.0;
+  std::string name;                             // given by a user; empty if there is none
+  bool is_locked = false;                       // by a user
   std::vector<ObservationResult> observations;  // by increasing keyframe id
   ObjectFit fit;
+
+  // The name, if there is one, after two blanks: for the end of a line of a table.
+  std::string NameAtEnd() const { return name.empty() ? name : "  " + name; }
 };
 
 // The largest angle between the rays from the cameras of the observations to the centre, degrees.

@@ -203,10 +203,11 @@ std::string DescribeObject(const ObjectResult& object) {
   const ObjectFit& fit = object.fit;
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
   return fmt::format(
-      "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
+      "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}{}\n",
       object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
       FormatFigure(fit.siou, 3), FormatFigure(fit.siou_mask, 3), FormatFigure(fit.mtd_m2, 6),
-      FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
+      FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z(),
+      object.NameAtEnd());
 }
 
 std::string DescribeFits(const ObjectResults& report, AlignmentKind alignment) {

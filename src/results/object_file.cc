@@ -123,21 +123,28 @@ Json ToJson(const ObjectResult& object) {
     votes[label] = Rounded(score, kMetre);
   }
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-  return {{"id", object.id.value},
-          {"class", object.label},
-          {"votes", votes},
-          {"state", ToString(object.state)},
-          {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
-          {"half_axes", HalfAxesJson(axes)},
-          {"dual_quadric", QuadricJson(object.ellipsoid)},
-          {"siou", RoundedOrNull(object.fit.siou)},
-          {"siou_mask", RoundedOrNull(object.fit.siou_mask)},
-          {"mtd_m2", RoundedOrNull(object.fit.mtd_m2)},
-          {"tangent_px", RoundedOrNull(object.fit.tangent_px)},
-          {"misfit_px", Rounded(object.misfit_px, kMetre)},
-          {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
-          {"quality", Rounded(QualityOf(object), kAngle)},
-          {"observations", object.observations.size()}};
+  Json json = {{"id", object.id.value},
+               {"class", object.label},
+               {"votes", votes},
+               {"state", ToString(object.state)},
+               {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
+               {"half_axes", HalfAxesJson(axes)},
+               {"dual_quadric", QuadricJson(object.ellipsoid)},
+               {"siou", RoundedOrNull(object.fit.siou)},
+               {"siou_mask", RoundedOrNull(object.fit.siou_mask)},
+               {"mtd_m2", RoundedOrNull(object.fit.mtd_m2)},
+               {"tangent_px", RoundedOrNull(object.fit.tangent_px)},
+               {"misfit_px", Rounded(object.misfit_px, kMetre)},
+               {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
+               {"quality", Rounded(QualityOf(object), kAngle)},
+               {"observations", object.observations.size()}};
+  if (!object.name.empty()) {
+    json["name"] = object.name;
+  }
+  if (object.is_locked) {
+    json["locked"] = true;
+  }
+  return json;
 }
 
 Json ToJson(const std::optional<LocatedObject>& located) {

@@ -131,6 +131,8 @@ ObjectResult ReadObject(const JsonNode& node) {
   object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
   object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
   object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
+  object.name = node.Has("name") ? node.At("name").Text() : "";
+  object.is_locked = node.Has("locked") && node.At("locked").Flag();
   return object;
 }
 

@@ -245,10 +245,10 @@ std::string DescribeMapped(const Map& map, const ObjectResults& report) {
                                      object.ellipsoid.world_from_object.translation);
     const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
     text += fmt::format(
-        "{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
+        "{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px{}\n",
         object.id.value, object.label, object.observations.size(), parallax, axes.x(), axes.y(),
         axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
-        object.misfit_px);
+        object.misfit_px, object.NameAtEnd());
   }
   return text;
 }

@@ -14,7 +14,8 @@ void StartNextStage(const MapMessage& message, bool is_applied, const SystemOpti
                     LoopStages& stages) {
   const auto* const correction = std::get_if<MapCorrection>(&message);
   const bool is_adjustment = correction != nullptr && !correction->loop;
-  const bool has_no_loop = is_adjustment || std::holds_alternative<LateDetections>(message);
+  const bool has_no_loop = is_adjustment || std::holds_alternative<LateDetections>(message) ||
+                           std::holds_alternative<ObjectEdit>(message);
   if (!options.loop.enabled || options.vocabulary == nullptr || has_no_loop) {
     return;
   }

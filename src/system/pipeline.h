@@ -37,9 +37,11 @@ class Pipeline {
   virtual void Begin(PipelineStart start) = 0;
   // See System::SetLocalizationOnly. To be called by the thread of Track.
   virtual void SetLocalizationOnly(bool is_on) = 0;
-  // See System::AwaitMasks and System::AddMasks. To be called by the thread of Track.
+  // See System::AwaitMasks. To be called by the thread of Track.
   virtual void AwaitMasks(bool is_on) = 0;
-  virtual void AddDetections(LateDetections late) = 0;
+  // Sends late detections or an edit of an object to the mapper. To be called by the thread of
+  // Track. Throws like Track.
+  virtual void Edit(MapMessage message) = 0;
   // See Tracker::KeepIdsSince. To be called by the thread of Track.
   virtual void KeepIdsSince(uint32_t revision) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After

@@ -39,10 +39,10 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
 
   void KeepIdsSince(uint32_t revision) override { tracker_.KeepIdsSince(revision); }
 
-  void AddDetections(LateDetections late) override {
-    Check(!is_finished_, "AddMasks after Finish");
+  void Edit(MapMessage message) override {
+    Check(!is_finished_, "the map is edited after Finish");
     RethrowFailure();
-    EditMap([&] { Process(std::move(late)); });
+    EditMap([&] { Process(message); });
   }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
@@ -128,8 +128,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
   }
 
   // Calls `edit`, which changes the live map, and stores its exception.
-  template <typename Edit>
-  void EditMap(const Edit& edit) {
+  template <typename Function>
+  void EditMap(const Function& edit) {
     try {
       edit();
     } catch (...) {

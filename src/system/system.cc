@@ -277,14 +277,39 @@ bool System::AddMasks(FrameId frame, std::vector<InstanceMask> masks) {
   if (found->request) {
     found->request->oldest_revision = 0;  // other requests say what may be forgotten
   }
-  pipeline_->AddDetections(
-      {.frame = frame,
-       .detections = std::move(built.frame->detections),
-       .keypoints = found->input->keypoints.size(),
-       .dynamic_keypoints = frame_builder_->DynamicKeypoints(masks, *found->input),
-       .request = std::move(found->request)});
+  pipeline_->Edit(
+      LateDetections{.frame = frame,
+                     .detections = std::move(built.frame->detections),
+                     .keypoints = found->input->keypoints.size(),
+                     .dynamic_keypoints = frame_builder_->DynamicKeypoints(masks, *found->input),
+                     .request = std::move(found->request)});
   awaiting_.erase(found);
   return true;
+}
+
+void System::NameObject(ObjectId object, std::string name) {
+  if (!ObjectLandmark::IsName(name)) {
+    throw InputError(fmt::format(
+        "the name \"{}\" of object {} has {} bytes; expected at most 100, of UTF-8 without control "
+        "characters",
+        ShowText(name), object.value, name.size()));
+  }
+  Edit({.object = object, .name = std::move(name)});
+}
+
+void System::LockObject(ObjectId object, bool is_locked) {
+  Edit({.object = object, .is_locked = is_locked});
+}
+
+void System::DeleteObject(ObjectId object) { Edit({.object = object, .is_deleted = true}); }
+
+void System::Edit(ObjectEdit edit) {
+  const std::shared_ptr<const Map> newest = map();
+  if (newest == nullptr || !newest->Resolve(edit.object).IsValid()) {
+    throw InputError(fmt::format("the map has no object {}; expected an id of Map::objects()",
+                                 edit.object.value));
+  }
+  pipeline_->Edit(std::move(edit));
 }
 
 // The revision of the oldest map whose ids are still kept here. Frames are kept in order, so it is

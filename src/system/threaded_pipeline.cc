@@ -22,10 +22,11 @@ namespace {
 constexpr size_t kMailboxCapacity = 8;  // larger than the number of requests that may wait
 
 // Whether the mapper shortens its work because this message waits. Tracking may need a keyframe or
-// a correction at once. Late detections can wait, and there may be some for every frame: if the
-// mapper hurried for them, it would hardly ever adjust the map.
+// a correction at once. Edits and late detections can wait, and there may be some for every frame:
+// if the mapper hurried for them, it would hardly ever adjust the map.
 bool IsUrgent(const MapMessage& message) {
-  return !std::holds_alternative<LateDetections>(message);
+  return !std::holds_alternative<LateDetections>(message) &&
+         !std::holds_alternative<ObjectEdit>(message);
 }
 
 // In a monocular run the mapper is always busy, and tracking would have to share its core with the
@@ -64,11 +65,11 @@ class ThreadedPipeline final : public Pipeline {
 
   void KeepIdsSince(uint32_t revision) override { tracker_.KeepIdsSince(revision); }
 
-  // The mailbox keeps the order, so the frame is a keyframe by then if it becomes one.
-  void AddDetections(LateDetections late) override {
-    Check(mapping_thread_.joinable(), "AddMasks after Finish");
+  // The mailbox keeps the order, so a frame is a keyframe by then if it becomes one.
+  void Edit(MapMessage message) override {
+    Check(mapping_thread_.joinable(), "the map is edited after Finish");
     RethrowFailure();
-    Post(std::move(late));
+    Post(std::move(message));
   }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
@@ -217,8 +218,8 @@ class ThreadedPipeline final : public Pipeline {
 
   // Calls `edit`, which changes the live map, and copies the results of the mapper that other
   // threads may read. Returns false if there was an exception; also the copies may lack memory.
-  template <typename Edit>
-  bool EditMap(const Edit& edit) {
+  template <typename Function>
+  bool EditMap(const Function& edit) {
     std::exception_ptr failure;
     try {
       edit();

@@ -271,23 +271,27 @@ nlohmann::json ObjectJson(const ViewObject& shown, double start) {
     votes[Printable(label)] = score;
   }
   Json body = shown.body ? Json(BodyJson(*shown.body)) : Json();
-  return {{"id", object.id.value},
-          {"body", std::move(body)},
-          {"class", Printable(object.label)},
-          {"state", ToString(object.state)},
-          {"reason", shown.reason},
-          {"votes", std::move(votes)},
-          {"centre", std::vector<double>(centre.begin(), centre.end())},
-          {"rotation", std::vector<double>(rotation.begin(), rotation.end())},
-          {"half_axes", std::vector<double>(axes.begin(), axes.end())},
-          {"siou", OrNull(object.fit.siou)},
-          {"siou_mask", OrNull(object.fit.siou_mask)},
-          {"tangent_px", OrNull(object.fit.tangent_px)},
-          {"misfit_px", object.misfit_px},
-          {"parallax_deg", ParallaxOf(object)},
-          {"quality", QualityOf(object)},
-          {"observations", object.observations.size()},
-          {"cutouts", PicturesJson(shown.cutouts, start)}};
+  Json json = {{"id", object.id.value},
+               {"body", std::move(body)},
+               {"class", Printable(object.label)},
+               {"state", ToString(object.state)},
+               {"reason", shown.reason},
+               {"votes", std::move(votes)},
+               {"centre", std::vector<double>(centre.begin(), centre.end())},
+               {"rotation", std::vector<double>(rotation.begin(), rotation.end())},
+               {"half_axes", std::vector<double>(axes.begin(), axes.end())},
+               {"siou", OrNull(object.fit.siou)},
+               {"siou_mask", OrNull(object.fit.siou_mask)},
+               {"tangent_px", OrNull(object.fit.tangent_px)},
+               {"misfit_px", object.misfit_px},
+               {"parallax_deg", ParallaxOf(object)},
+               {"quality", QualityOf(object)},
+               {"observations", object.observations.size()},
+               {"cutouts", PicturesJson(shown.cutouts, start)}};
+  if (!object.name.empty()) {
+    json["name"] = Printable(object.name);
+  }
+  return json;
 }
 
 nlohmann::json TrajectoryJson(const Trajectory& poses, double start) {

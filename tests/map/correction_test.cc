@@ -785,6 +785,30 @@ TEST_F(CorrectionByHand, MergedObjectsAreCandidatesWithAllVotes) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
+TEST_F(CorrectionByHand, ALockedObjectIsKeptAsItIs) {
+  RandomGeometry random(3);
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 3; ++i) {
+    ids.push_back(map_.AddObject());
+  }
+  ASSERT_TRUE(map_.AddObservation(ids[0], a_, 0));
+  ASSERT_TRUE(map_.AddObservation(ids[1], b_, 2));
+  ASSERT_TRUE(map_.AddObservation(ids[2], c_, 1));
+  GiveShapes(map_, random);
+  for (const ObjectId id : {ids[0], ids[2]}) {
+    map_.MutableObject(id).state = ObjectState::kMapped;
+    map_.MutableObject(id).is_locked = true;
+  }
+  const Ellipsoid shape = map_.objects().At(ids[0]).ellipsoid;
+  correction_.objects = {{ids[0], ids[1]}, {ids[2], ids[0]}};
+  EXPECT_EQ(Apply().merged_objects, std::vector<ObjectId>{ids[0]});
+  EXPECT_EQ(map_.Resolve(ids[1]), ids[0]);
+  EXPECT_EQ(map_.Resolve(ids[2]), ids[2]) << "both are locked";
+  EXPECT_TRUE(map_.objects().At(ids[0]).IsFixed());
+  EXPECT_EQ(map_.objects().At(ids[0]).ellipsoid.half_axes, shape.half_axes);
+  EXPECT_EQ(map_.objects().At(ids[0]).observations.size(), 2u);
+}
+
 TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
   std::vector<ObjectId> ids;
   for (int i = 0; i < 6; ++i) {

@@ -99,5 +99,40 @@ TEST(ObjectsOfTheMap, ReferToTheFirstKeyframeThatObservesThem) {
   EXPECT_EQ(map.objects().At(object).reference, b);
 }
 
+TEST(ObjectLandmark, ANameIsShortTextWithoutControlCharacters) {
+  EXPECT_TRUE(ObjectLandmark::IsName(""));
+  EXPECT_TRUE(
+      ObjectLandmark::IsName("Grandma's \xc3\xbc"
+                             "berall"));
+  EXPECT_TRUE(ObjectLandmark::IsName(std::string(100, 'a')));
+  EXPECT_FALSE(ObjectLandmark::IsName(std::string(101, 'a')));
+  EXPECT_FALSE(ObjectLandmark::IsName("two\nlines"));
+  EXPECT_FALSE(ObjectLandmark::IsName("\xff"));
+}
+
+TEST(ObjectLandmark, IsFixedOnceItIsLockedAndMapped) {
+  ObjectLandmark object;
+  object.is_locked = true;
+  EXPECT_FALSE(object.IsFixed());
+  object.state = ObjectState::kMapped;
+  EXPECT_TRUE(object.IsFixed());
+}
+
+TEST(ObjectsOfTheMap, HandTheirNameAndLockToTheObjectThatReplacesThem) {
+  Map map;
+  const ObjectId a = map.AddObject();
+  const ObjectId b = map.AddObject();
+  const ObjectId c = map.AddObject();
+  map.MutableObject(a).name = "mine";
+  map.MutableObject(a).is_locked = true;
+  map.ReplaceObject(a, b);
+  EXPECT_EQ(map.objects().At(b).name, "mine");
+  EXPECT_TRUE(map.objects().At(b).is_locked);
+  map.MutableObject(c).name = "yours";
+  map.ReplaceObject(c, b);
+  EXPECT_EQ(map.objects().At(b).name, "mine");
+  EXPECT_TRUE(map.objects().At(b).is_locked);
+}
+
 }  // namespace
 }  // namespace hullslam

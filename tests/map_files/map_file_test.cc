@@ -297,7 +297,44 @@ TEST_F(MapFileTest, LabelsAreMadePrintable) {
   EXPECT_EQ(read.objects().At(object).votes, (std::map<std::string, double>{{"cup?[2J", 1.625}}));
 }
 
+TEST_F(MapFileTest, NamesAndLocksAreKept) {
+  Map map = SmallMap();
+  const std::string without = Written(map);
+  map.MutableObject(ObjectId(1)).name = "Lisa's cup \xc3\xbc";
+  const std::string named = Written(map);
+  EXPECT_EQ(named.size(), without.size() + 4 + 13) << "length and bytes of the name";
+  EXPECT_EQ(ReadMap(path_).map.objects().At(ObjectId(1)).name, "Lisa's cup \xc3\xbc");
+  EXPECT_FALSE(ReadMap(path_).map.objects().At(ObjectId(1)).is_locked);
+  map.MutableObject(ObjectId(1)).is_locked = true;
+  const Map read = ReadBack(map);
+  EXPECT_TRUE(read.objects().At(ObjectId(1)).is_locked);
+  EXPECT_EQ(Written(read), Written(map));
+}
+
 // ---- refusals
+
+TEST_F(MapFileTest, NamesAndStatesThatCannotBeAreRefused) {
+  for (const std::string& name :
+       {std::string(101, 'a'), std::string("a\nb"), std::string("\xff")}) {
+    Map map = SmallMap();
+    map.MutableObject(ObjectId(1)).name = name;
+    ExpectRefusal(Written(map), {"name"});
+  }
+  Map map = SmallMap();
+  const std::string free = Written(map);
+  map.MutableObject(ObjectId(1)).is_locked = true;
+  const std::string locked = Written(map);
+  ASSERT_EQ(locked.size(), free.size());
+  const auto state = static_cast<size_t>(
+      std::mismatch(free.begin(), free.end(), locked.begin()).first - free.begin());
+  std::string bad = locked;
+  bad[state] = 8;
+  ExpectRefusal(WithChecksum(bad), {"state"});
+  const size_t end = bad.size();
+  bad[state] = static_cast<char>(locked[state] | 2);  // but no name follows
+  ExpectRefusal(WithChecksum(bad));
+  EXPECT_EQ(bad.size(), end);
+}
 
 TEST_F(MapFileTest, OtherSettingsAreRefused) {
   WriteMap(path_, SmallMap(), MadeSettings());

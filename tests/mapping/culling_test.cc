@@ -442,6 +442,15 @@ TEST(CullKeyframes, ByTheRuleOfOrbSlam2OnlyCloseLandmarksCount) {
   CullKeyframes(made.map, KeyframeId(4), sensor, kMinObjectViews, MappingRule::kOrbSlam2);
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1)));
 
+  SyntheticMap held = NearbyKeyframes(world, 5);
+  SeeAlone(held, KeyframeId(1), 2, [&](double depth) { return depth <= sensor.close_depth; });
+  ObjectLandmark& locked = held.map.MutableObject(held.map.AddObject());
+  locked.state = ObjectState::kMapped;
+  locked.is_locked = true;
+  ASSERT_TRUE(held.map.AddObservation(ObjectId(0), KeyframeId(1), 0));
+  CullKeyframes(held.map, KeyframeId(4), sensor, kMinObjectViews, MappingRule::kOrbSlam2);
+  EXPECT_TRUE(held.map.keyframes().Contains(KeyframeId(1))) << "the last view of a locked object";
+
   SyntheticMap far = NearbyKeyframes(world, 5);
   sensor.close_depth = 0.5;
   EXPECT_EQ(CullKeyframes(far.map, KeyframeId(4), sensor, 3, MappingRule::kOrbSlam2), 0)

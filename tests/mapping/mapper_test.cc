@@ -832,5 +832,30 @@ TEST_F(MapperKnownSizesTest, ASizeMakesTheUnitTheMetreDuringTheRun) {
   EXPECT_NEAR(Unit(), 1.0, 0.01);
 }
 
+TEST_F(MapperTest, AnEditReachesTheObjectThatReplacedItsOwn) {
+  Map map;
+  const auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(0);
+  frame->detections.resize(2);
+  map.AddKeyframe(frame, {});
+  const ObjectId old = map.AddObject();
+  const ObjectId kept = map.AddObject();
+  map.AddObservation(old, KeyframeId(0), 0);
+  map.ReplaceObject(old, kept);
+  std::shared_ptr<const Map> published;
+  const Sensor sensor;
+  Mapper mapper(sensor, {}, {}, [&](std::shared_ptr<const Map> now) { published = now; });
+  mapper.Begin(std::move(map), {"second", FrameId(1)});
+  EXPECT_TRUE(mapper.Process(ObjectEdit{.object = old, .name = "cup"}, nullptr));
+  EXPECT_TRUE(mapper.Process(ObjectEdit{.object = old, .is_locked = true}, nullptr));
+  EXPECT_EQ(published->objects().At(kept).name, "cup");
+  EXPECT_TRUE(published->objects().At(kept).is_locked);
+  EXPECT_FALSE(mapper.HasChangedMap()) << "there is no new session without a keyframe";
+  EXPECT_TRUE(mapper.Process(ObjectEdit{.object = old, .is_deleted = true}, nullptr));
+  EXPECT_TRUE(published->objects().empty());
+  EXPECT_FALSE(published->keyframes().At(KeyframeId(0)).objects[0].IsValid());
+  EXPECT_FALSE(mapper.Process(ObjectEdit{.object = old, .name = "late"}, nullptr));
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -149,6 +149,19 @@ TEST_F(Duplicates, TheOneOfAnEarlierSessionStays) {
   EXPECT_EQ(pairs[0], std::pair(earlier, later));
 }
 
+TEST_F(Duplicates, ALockedObjectStaysAndTwoOfThemAreNone) {
+  Look({cup_, near_}, 7);
+  const ObjectId locked = Add(cup_, {0, 1, 2}, 0);
+  const ObjectId other = Add(near_, {3, 4, 5, 6}, 1);
+  map_.MutableObject(locked).state = map_.MutableObject(other).state = ObjectState::kMapped;
+  map_.MutableObject(locked).is_locked = true;
+  const auto pairs = FindDuplicates(map_);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0], std::pair(locked, other));
+  map_.MutableObject(other).is_locked = true;
+  EXPECT_TRUE(FindDuplicates(map_).empty());
+}
+
 // The candidate has another class than the mapped cup, and a shape that is far too thin.
 class Doubled : public Duplicates {
  protected:

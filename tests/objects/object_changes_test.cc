@@ -131,6 +131,16 @@ TEST_F(ObjectChanges, WhatIsMissingIsGone) {
   EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kSeenAgain);
 }
 
+TEST_F(ObjectChanges, ALockedObjectIsNotGone) {
+  Visit(MakeTable());
+  EndFirstSession();
+  map_.MutableObject(ObjectId(0)).is_locked = true;
+  std::vector<MadeObject> table = MakeTable();
+  table.erase(table.begin());
+  Visit(table);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kNotSeen);
+}
+
 TEST_F(ObjectChanges, AnObjectThatWasNotThereIsNew) {
   std::vector<MadeObject> table = MakeTable();
   table.pop_back();

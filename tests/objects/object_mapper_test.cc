@@ -312,5 +312,57 @@ TEST_F(Mapping, TheBestOfSeveralStartsIsKept) {
   EXPECT_GT(best_is_last, 0u);
 }
 
+void ExpectSameShape(const ObjectLandmark& a, const ObjectLandmark& b) {
+  EXPECT_EQ(a.ellipsoid.half_axes, b.ellipsoid.half_axes);
+  EXPECT_EQ(a.ellipsoid.world_from_object.translation, b.ellipsoid.world_from_object.translation);
+  EXPECT_EQ(a.misfit_px, b.misfit_px);
+  EXPECT_EQ(b.state, ObjectState::kMapped);
+}
+
+// Its shape is that of the user, which contradicts what is seen.
+TEST_F(Mapping, ALockedObjectIsNeitherRefinedNorRejectedNorCulled) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 3u);
+  map_.MutableObject(ObjectId(1)).is_locked = true;
+  map_.MutableObject(ObjectId(1)).ellipsoid.half_axes *= 4.0;
+  const ObjectLandmark before = map_.objects().At(ObjectId(1));
+  mapper_.Recheck(map_, std::vector{ObjectId(1)});
+  ExpectSameShape(before, map_.objects().At(ObjectId(1)));
+  for (int i = 5; i < 9; ++i) {
+    See(table, 0.1 * i);
+  }
+  ExpectSameShape(before, map_.objects().At(ObjectId(1)));
+  EXPECT_EQ(map_.objects().At(ObjectId(1)).observations.size(), 9u) << "it is seen as before";
+  for (int i = 0; i < 60; ++i) {
+    See({table[0]}, 0.02 * i);
+  }
+  ASSERT_TRUE(map_.objects().Contains(ObjectId(1)));
+  ExpectSameShape(before, map_.objects().At(ObjectId(1)));
+  EXPECT_EQ(Mapped().size(), 2u) << "the bottle is gone";
+}
+
+TEST_F(Mapping, ACopyWithMoreViewsDoesNotChangeALockedObject) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  map_.MutableObject(ObjectId(0)).is_locked = true;
+  const ObjectLandmark before = map_.objects().At(ObjectId(0));
+  const ObjectId copy = map_.AddObject();
+  MadeObject vase = table[0];
+  vase.label = "vase";
+  for (int i = 5; i < 13; ++i) {
+    map_.AddObservation(copy, AddObserver(map_, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.8), {vase}),
+                        0);
+  }
+  mapper_.RefineMerged(map_, std::vector{copy});
+  EXPECT_EQ(map_.Resolve(copy), ObjectId(0));
+  ExpectSameShape(before, map_.objects().At(ObjectId(0)));
+  EXPECT_EQ(map_.objects().At(ObjectId(0)).observations.size(), 13u);
+}
+
 }  // namespace
 }  // namespace hullslam

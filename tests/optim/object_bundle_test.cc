@@ -489,5 +489,55 @@ TEST_F(ObjectBundle, TheMisfitOfAnObjectCountsTwiceInTheSigmaOfItsLines) {
   }
 }
 
+// Both solvers: Ceres alone, as in a large map, and with the points eliminated.
+TEST_F(ObjectBundle, ALockedObjectStaysAndTheOthersAreAdjusted) {
+  PerturbPoses(0.01, 0.02);
+  PerturbObjects(0.2);
+  ObjectLandmark& locked = made_.map.MutableObject(ids_[0]);
+  locked.is_locked = true;
+  locked.ellipsoid = objects_[0].ellipsoid;
+  const double before =
+      ShapeError(made_.map.objects().At(ids_[1]).ellipsoid, objects_[1].ellipsoid);
+  for (const size_t max_eliminated : {size_t{0}, kPrecise.max_eliminated}) {
+    BundleOptions options = kPrecise;
+    options.max_eliminated = max_eliminated;
+    const BundleResult result = Adjust(Window(), options);
+    ASSERT_TRUE(result.is_usable);
+    ASSERT_EQ(result.ellipsoids.size(), 2u);
+    EXPECT_EQ(result.ellipsoids[0].first, ids_[1]);
+    EXPECT_LT(ShapeError(result.ellipsoids[0].second, objects_[1].ellipsoid), 0.5 * before);
+    EXPECT_LT(MeanPoseError(result), 1e-3);
+    EXPECT_TRUE(result.failed_objects.empty());
+  }
+}
+
+// All poses of a monocular map are too near to the root. Locked objects have the true size.
+TEST_F(ObjectBundle, LockedObjectsHoldTheScaleOfAMonocularMap) {
+  Make({.points = 300, .depth_share = 0.0});
+  Sensor sensor = world_->sensor();
+  sensor.kind = SensorKind::kMonocular;
+  for (const bool is_locked : {false, true}) {
+    for (uint32_t i = 1; i < made_.views.size(); ++i) {
+      Rigid3 pose = SyntheticWorld::CamFromWorld(10.0 * i);
+      pose.translation *= 0.95;
+      made_.map.SetPose(KeyframeId(i), pose);
+    }
+    for (const ObjectId id : ids_) {
+      made_.map.MutableObject(id).is_locked = is_locked;
+    }
+    BundleWindow window = Window();
+    window.fixed = {KeyframeId(0)};
+    window.moving.insert(window.moving.begin(), KeyframeId(1));
+    for (const size_t max_eliminated : {size_t{0}, kPrecise.max_eliminated}) {
+      BundleOptions options = kPrecise.ForWholeMap();
+      options.max_eliminated = max_eliminated;
+      const BundleResult result = AdjustBundle(made_.map, sensor, window, options, nullptr);
+      ASSERT_TRUE(result.is_usable);
+      EXPECT_EQ(result.ellipsoids.size(), is_locked ? 0u : 3u);
+      EXPECT_EQ(MeanPoseError(result) < 1e-3, is_locked) << MeanPoseError(result);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

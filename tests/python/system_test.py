@@ -261,6 +261,34 @@ def test_masks_may_come_after_their_frame(slam, wall):
         slam.add_masks(first.frame, wrong)
 
 
+def test_objects_have_names_and_locks(settings, slam, wall, tmp_path):
+    square = hullslam.Masks.from_outlines([[(100, 80), (200, 80), (200, 160), (100, 160)]], ["cup"])
+    slam.track(wall.images[0], wall.depth, square, timestamp=0.0)
+    [thing] = slam.map.candidates
+    assert (thing.name, thing.is_locked) == ("", False)
+    slam.name_object(thing.id, "Großmutters")
+    slam.lock_object(thing.id)
+    for wrong in (-1, 77, 2**40):
+        with pytest.raises(hullslam.InputError, match=f"no object {wrong}"):
+            slam.delete_object(wrong)
+    with pytest.raises(hullslam.InputError, match="100"):
+        slam.name_object(thing.id, "ß" * 51)
+    slam.save_map(tmp_path / "named.map")
+
+    later = hullslam.System(settings, map=tmp_path / "named.map", localization=True)
+    [thing] = later.map.candidates
+    assert (thing.name, thing.is_locked) == ("Großmutters", True)
+    later.lock_object(thing.id, locked=False)
+    later.name_object(thing.id, "")
+    [thing] = later.map.candidates
+    assert (thing.name, thing.is_locked) == ("", False)
+    later.delete_object(thing.id)
+    assert later.map.candidates == []
+    later.finish()
+    with pytest.raises(hullslam.InputError, match="finish"):
+        later.name_object(thing.id, "a")
+
+
 @pytest.mark.parametrize("kind", [bool, np.uint8])
 def test_one_mask_for_all_images_hides_its_pixels(settings, wall, kind):
     used = np.ones((240, 320), kind)

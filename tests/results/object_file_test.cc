@@ -87,6 +87,23 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(observation["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
 }
 
+TEST(ObjectFile, NamesAndLocksAreWrittenWhereThereAreAny) {
+  const TemporaryFolder folder;
+  ObjectResults report = MakeReport();
+  report.objects[1].name = "Lisa's";
+  report.objects[1].is_locked = true;
+  const std::string text = FormatObjects(report);
+  const Json json = Json::parse(text);
+  EXPECT_FALSE(json["objects"][0].contains("name") || json["objects"][0].contains("locked"));
+  EXPECT_EQ(json["objects"][1]["name"], "Lisa's");
+  EXPECT_EQ(json["objects"][1]["locked"], true);
+  folder.Write("objects_observations.json", FormatObservations(report));
+  const ObjectResults read = ReadObjects(folder.Write("objects.json", text));
+  EXPECT_EQ(read.objects[0].NameAtEnd(), "");
+  EXPECT_EQ(read.objects[1].NameAtEnd(), "  Lisa's");
+  EXPECT_TRUE(read.objects[1].is_locked);
+}
+
 TEST(ObjectFile, AnObjectOfTheSceneHasItsBoxAndItsFreeAxes) {
   Scene scene;
   SceneObject& body = scene.objects.emplace_back();

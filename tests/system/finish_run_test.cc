@@ -26,7 +26,7 @@ class FinishedPipeline : public Pipeline {
   void Begin(PipelineStart) override {}
   void SetLocalizationOnly(bool) override {}
   void AwaitMasks(bool /*is_on*/) override {}
-  void AddDetections(LateDetections /*late*/) override {}
+  void Edit(MapMessage /*message*/) override {}
   void KeepIdsSince(uint32_t /*revision*/) override {}
   FrameReport Track(std::shared_ptr<const Frame>) override { return {}; }
   void Finish(const Cancellation*, const ProgressCallback&) override {}

@@ -98,6 +98,10 @@ TEST_F(StartNextStageTest, SeeksALoopAgainThatWasDropped) {
   EXPECT_TRUE(stages.adjusted.empty());
 }
 
+TEST_F(StartNextStageTest, AnEditOfAnObjectStartsNothing) {
+  EXPECT_TRUE(Start(ObjectEdit{.object = ObjectId(0), .name = "a"}).sought.empty());
+}
+
 TEST_F(StartNextStageTest, WithoutTheOptionTheMapIsNotAdjusted) {
   options_.loop.global_adjustment = false;
   EXPECT_TRUE(Start(Correction(true)).adjusted.empty());

@@ -676,6 +676,37 @@ TEST_P(SystemTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
   EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
 }
 
+TEST_P(SystemTest, ObjectsAreNamedLockedAndDeletedAndFilesKeepIt) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  {
+    System system(Wall::Options(), GetParam());
+    ExpectInputError([&] { system.NameObject(ObjectId(0), "a"); }, {"no object 0"});
+    system.Track(Time(0), TheWall().Photograph(0), Wall::Depth(0), SquareMask());
+    ASSERT_TRUE(system.map()->objects().Contains(ObjectId(0)));
+    system.NameObject(ObjectId(0), "poster");
+    system.LockObject(ObjectId(0), true);
+    ExpectInputError([&] { system.LockObject(ObjectId(7), true); }, {"no object 7"});
+    ExpectInputError([&] { system.DeleteObject(ObjectId(7)); }, {"no object 7"});
+    ExpectInputError([&] { system.NameObject(ObjectId(0), "a\tb"); }, {"a?b", "object 0"});
+    system.Finish();
+    EXPECT_THROW(system.DeleteObject(ObjectId(0)), CheckError);
+    WriteMap(path, *system.map(), MapSettingsOf(Wall::Options()));
+  }
+  System later(Wall::Options(), GetParam(),
+               {.map = ReadMap(path, Wall::Options()), .localization_only = true});
+  EXPECT_EQ(later.map()->objects().At(ObjectId(0)).name, "poster");
+  EXPECT_TRUE(later.map()->objects().At(ObjectId(0)).is_locked);
+  later.NameObject(ObjectId(0), "");
+  later.LockObject(ObjectId(0), false);
+  later.DeleteObject(ObjectId(0));
+  later.Finish();
+  EXPECT_TRUE(later.map()->objects().empty());
+  EXPECT_EQ(FindViolations(*later.map()), std::vector<std::string>());
+  later.Reset();
+  EXPECT_EQ(later.map()->objects().At(ObjectId(0)).name, "poster");
+}
+
 // Nothing of the run before may be left: neither frames that await masks nor counts.
 TEST_P(SystemTest, ResetForgetsAllThatTheRunHasLeft) {
   const auto run = [&](System& system) {

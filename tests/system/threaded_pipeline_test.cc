@@ -270,7 +270,7 @@ class HurryOfTheMapper : public testing::Test {
   // Masks of frames that are no keyframes, without objects.
   void AddLate(int count) {
     for (int i = 0; i < count; ++i) {
-      pipeline_->AddDetections({.frame = FrameId(1'000'000), .detections = {}});
+      pipeline_->Edit(LateDetections{.frame = FrameId(1'000'000), .detections = {}});
     }
   }
   Work CountWork() const {

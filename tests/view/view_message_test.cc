@@ -45,6 +45,7 @@ TEST(ViewMessage, HasTheKeysOfTheFormat) {
   EXPECT_EQ(object["half_axes"], Json({0.2, 0.2, 0.2}));
   EXPECT_EQ(object["siou"], 0.75);
   EXPECT_TRUE(object["siou_mask"].is_null());
+  EXPECT_FALSE(object.contains("name"));
   EXPECT_EQ(parts["images"][0]["image"], "data:image/jpeg;base64,anBlZw==");
   EXPECT_EQ(parts["images"][0]["time"], 1.0);
   EXPECT_EQ(parts["images"][0]["outlines"][0]["points"], Json({0.0, 1.0, 2.0, 2.0}));
@@ -68,6 +69,13 @@ TEST(ViewMessage, NoLabelCanLeaveTheMessage) {
   const std::string read = Json::parse(text)["set"]["objects"][0]["class"];
   EXPECT_TRUE(read.starts_with("</script><!--<b>\"'&")) << read;
   EXPECT_TRUE(read.ends_with("\U0001F600")) << read;
+}
+
+TEST(ViewMessage, AnObjectHasItsNameIfAUserGaveOne) {
+  ViewModel model = MadeView(1, "cup");
+  model.objects.at(0).object.name = "Lisa's";
+  const Json json = Json::parse(FormatViewMessage(model));
+  EXPECT_EQ(json["set"]["objects"][0]["name"], "Lisa's");
 }
 
 TEST(ViewMessage, BytesThatAreNoTextAreReplaced) {

@@ -88,7 +88,8 @@ class Map {
   // Also removes the vote. An object that has no observation left stays, as a candidate.
   void RemoveObservation(ObjectId object, KeyframeId keyframe);
   void EraseObject(ObjectId object);
-  // Like ReplaceLandmark. The shape of `by` is kept.
+  // Like ReplaceLandmark. The shape of `by` is kept. It takes the lock and, if it has no name, the
+  // name of `object`.
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
 
@@ -169,7 +170,8 @@ class Map {
   // Removes a keyframe that has no observations any more, without its links to others. It has no
   // pose afterwards.
   void RemoveKeyframe(KeyframeId keyframe);
-  // State, shape, misfit and counts may be written; observations and votes belong to this class.
+  // State, shape, misfit, counts, name and lock may be written; observations and votes belong to
+  // this class.
   ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }
 
  private:

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -112,8 +113,17 @@ struct LateDetections {
   std::optional<KeyframeRequest> request = std::nullopt;
 };
 
+// A user's change of an object, which is skipped if the object was removed meanwhile.
+struct ObjectEdit {
+  ObjectId object;
+  std::optional<std::string> name = std::nullopt;  // ObjectLandmark::IsName
+  std::optional<bool> is_locked = std::nullopt;
+  bool is_deleted = false;
+};
+
 // The messages that the mapper receives.
-using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection, LateDetections>;
+using MapMessage =
+    std::variant<InitialMap, KeyframeRequest, MapCorrection, LateDetections, ObjectEdit>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
 

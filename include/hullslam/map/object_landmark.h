@@ -52,9 +52,17 @@ struct ObjectLandmark {
   double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
   double compensated_px = 0.0;  // the same after misfit compensation
   std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes
-  int visible = 0;  // number of keyframes since it was mapped that found or should have shown it
-  int found = 0;    // number of these that found it
+  int visible = 0;   // number of keyframes since it was mapped that found or should have shown it
+  int found = 0;     // number of these that found it
+  std::string name;  // given by a user; empty if there is none
+  bool is_locked = false;  // by a user, see IsFixed()
 
+  // Whether nothing but a correction of the map around it changes the state, the shape and the
+  // misfit of the object. It is not removed, unless by a user or with its island. A locked
+  // candidate is mapped first.
+  bool IsFixed() const { return is_locked && state == ObjectState::kMapped; }
+  // Whether a text can be a name: at most 100 bytes of UTF-8 without control characters.
+  static bool IsName(std::string_view text);
   // The class with most votes; ties go to the first in the alphabet.
   const std::string& Label() const;
 };

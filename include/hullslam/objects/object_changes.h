@@ -56,7 +56,7 @@ struct ChangedObject {
 // after a session whose frames have the id `session` or a larger one. The objects of the former map
 // come first, by increasing id, then those that are new or were first seen. Keyframes without any
 // detection count as not seen, so a session without masks changes nothing. `left` are objects of
-// the former map that are known to have left.
+// the former map that are known to have left. Locked objects are not gone whatever is seen.
 std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
                                              const Sensor& sensor, const ObjectOptions& options,
                                              const std::set<ObjectId>& left = {});

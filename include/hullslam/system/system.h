@@ -139,6 +139,18 @@ class System {
   bool AddMasks(FrameId frame, std::vector<InstanceMask> masks);
   static constexpr double kMaskPatience = 2.0;  // s
 
+  // Changes of one object by a user, also of a loaded map and when poses are only localised. A name
+  // has at most 100 bytes of UTF-8 without control characters; an empty one removes it. A locked
+  // object keeps its shape, its place relative to the world around it, and its id
+  // (ObjectLandmark::IsFixed); it goes on to hold poses. A deleted object goes with its
+  // observations, but later detections of the thing may be mapped as a new object. If the object
+  // was fused into another one, that one is changed. In the pipelines with threads map() shows the
+  // change when the mapper has come to it. To be called by the thread of Track. Throws InputError
+  // for an object that map() does not have and for another name, and CheckError after Finish.
+  void NameObject(ObjectId object, std::string name);
+  void LockObject(ObjectId object, bool is_locked);
+  void DeleteObject(ObjectId object);
+
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
   // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.
@@ -208,6 +220,7 @@ class System {
   std::vector<MapEvent> TakeEvents();
   void KeepAwaiting(const FrameReport& report, std::shared_ptr<const DetectionInput> input);
   uint32_t OldestRevision() const;
+  void Edit(ObjectEdit edit);
   void FitDepthError(const ImageInput& image);
   void CheckStamp(double timestamp) const;
   void CheckMotion(const Frame& frame) const;
