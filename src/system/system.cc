@@ -130,6 +130,8 @@ System::~System() = default;
 std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
+  Check(!start_.world_from_cam || start_.world_from_cam->ToMatrix().allFinite(),
+        "the pose at which the map is to begin is not finite");
   RequireSameVocabulary(start_.map, options_.vocabulary.get());
   vector_length_ = 0;
   for (const auto& [id, keyframe] : start_.map.keyframes()) {

@@ -919,6 +919,8 @@ TEST_P(SystemTest, ANewMapBeginsAtAGivenPose) {
   system.Finish();
   EXPECT_LT((system.trajectory().front().world_from_cam.translation - start.translation).norm(),
             0.01);
+  const Rigid3 nowhere(Eigen::Quaterniond::Identity(), {std::nan(""), 0.0, 0.0});
+  EXPECT_THROW(System(Wall::Options(), GetParam(), {.world_from_cam = nowhere}), CheckError);
 }
 
 TEST(System, TheCallbackGetsAReportOfEachFrame) {
