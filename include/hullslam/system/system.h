@@ -84,9 +84,9 @@ struct LeftIsland {
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does and for a map whose vocabulary has another
-  // content than the options have, and CheckError for localization without a map. With a map of
-  // earlier sessions, frame and keyframe ids go on after the largest of the map, and time stamps
-  // may begin anywhere.
+  // content than the options have, and CheckError for localization without a map and for a start
+  // pose that is not finite. With a map of earlier sessions, frame and keyframe ids go on after the
+  // largest of the map, and time stamps may begin anywhere.
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
 
