@@ -43,6 +43,10 @@ cv::Mat PixelsOf(const Image& message) {
   if (type == kTypes.end()) {
     throw hullslam::InputError("the encoding '" + message.encoding + "' is not read");
   }
+  const size_t row = size_t{message.width} * CV_ELEM_SIZE(type->second);
+  if (message.step < row || message.data.size() < size_t{message.step} * message.height) {
+    throw hullslam::InputError("an image has fewer bytes than its rows need");
+  }
   cv::Mat pixels(static_cast<int>(message.height), static_cast<int>(message.width), type->second,
                  const_cast<uint8_t*>(message.data.data()), message.step);
   if (message.encoding.starts_with("rgb")) {
