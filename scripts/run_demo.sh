@@ -36,8 +36,8 @@ fi
 step "run"
 "$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run" --report
 
-step "compare objects with ground truth"
-"$bin/hullslam" evaluate objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
+step "compare boxes of the objects with the true bodies"
+"$bin/hullslam" evaluate objects "$run" --truth "$sequence/groundtruth_objects.json" --upright
 
 step "draw"
 "$top/scripts/plot_run.py" "$run" --overlay 6

@@ -50,8 +50,8 @@ class StepsTest(unittest.TestCase):
         self.assertEqual(built, {"rgbd_tum", "hullslam_program", "make_synthetic"})
         self.assertEqual(calls[-3], "rgbd_tum build/demo/desk --masks build/demo/desk/masks "
                                     "--output build/demo/run --report")
-        self.assertEqual(calls[-2], "hullslam evaluate objects build/demo/run --groundtruth "
-                                    "build/demo/desk/groundtruth_objects.json")
+        self.assertEqual(calls[-2], "hullslam evaluate objects build/demo/run --truth "
+                                    "build/demo/desk/groundtruth_objects.json --upright")
         self.assertEqual(calls[-1], "plot_run.py build/demo/run --overlay 6")
         self.assertRegex(result.stdout.splitlines()[-1],
                          "^Open the report in a browser: file:///.*/build/demo/run/report.html$")
