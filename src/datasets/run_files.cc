@@ -63,7 +63,8 @@ void WriteIslands(const RunFiles& files, OutputFolder& output) {
 }  // namespace
 
 RunContent CollectContent(const System& system, const std::string& sequence,
-                          size_t earlier_sessions, bool keeps_islands) {
+                          const std::optional<Trajectory>& groundtruth, size_t earlier_sessions,
+                          bool keeps_islands) {
   const SystemOptions& options = system.options();
   RunContent content;
   content.trajectory = system.trajectory();
@@ -72,6 +73,7 @@ RunContent CollectContent(const System& system, const std::string& sequence,
   if (content.map->sessions().size() > earlier_sessions && earlier_sessions > 0) {
     content.objects.changes = system.object_changes();
   }
+  content.scene = MakeScene(*content.map, content.objects, groundtruth);
   content.landmarks = LocateLandmarks(*content.map, MakeSensor(options));
   if (keeps_islands) {
     content.islands = system.left_islands();
@@ -92,8 +94,7 @@ void WriteRunFiles(const RunFiles& files, OutputFolder& output) {
     output.Write({"groundtruth.txt", FormatTrajectory(*files.sequence.converted_groundtruth)});
   }
   if (files.has_objects) {
-    const Scene scene = MakeScene(*content.map, content.objects, files.groundtruth);
-    for (const FileContent& file : ObjectFiles(content.objects, scene)) {
+    for (const FileContent& file : ObjectFiles(content.objects, content.scene)) {
       output.Write(file);
     }
   }

@@ -12,6 +12,7 @@
 #include "map/located_landmarks.h"
 #include "report/object_results.h"
 #include "results/output_folder.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -21,19 +22,20 @@ struct RunContent {
   Trajectory trajectory;
   LocatedLandmarks landmarks;
   ObjectResults objects;                // with their fits
+  Scene scene;                          // of these objects
   std::span<const LeftIsland> islands;  // those that have files of their own
 };
 
 // The results of a run after System::Finish. The map had `earlier_sessions` sessions before. The
-// system must outlive them.
+// true trajectory may tell what is upwards. The system must outlive them.
 RunContent CollectContent(const System& system, const std::string& sequence,
-                          size_t earlier_sessions, bool keeps_islands);
+                          const std::optional<Trajectory>& groundtruth, size_t earlier_sessions,
+                          bool keeps_islands);
 
 struct RunFiles {
   const RunContent& content;
   const ImageSequence& sequence;
   const SystemOptions& options;
-  const std::optional<Trajectory>& groundtruth;
   std::optional<std::string> session;  // its title; absent: the run began with an empty map
   bool has_objects = false;
 };

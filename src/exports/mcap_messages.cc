@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "bags/message_fields.h"
-#include "camera/wide_lens.h"
+#include "camera/named_lens.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 

@@ -12,7 +12,6 @@
 #include "images/image_codecs.h"
 #include "images/image_file.h"
 #include "map/located_landmarks.h"
-#include "scene/make_scene.h"
 #include "sequences/image_list.h"
 #include "system/make_sensor.h"
 #include "view/point_colours.h"
@@ -45,9 +44,8 @@ class RunRecorder {
     WriteOnce("/map/points", "sensor_msgs/msg/PointCloud2", start, Points(start));
     WriteOnce("/map/objects", "vision_msgs/msg/Detection3DArray", start,
               DetectionsMessage(start, objects));
-    const Scene scene = MakeScene(*run_.map, *run_.objects, *run_.groundtruth);
     WriteOnce("/map/scene", "foxglove_msgs/msg/SceneUpdate", start,
-              SceneMessage(start, objects, scene));
+              SceneMessage(start, objects, *run_.scene));
     const size_t missing = WriteFrames();
     writer_.Close();
     return missing;

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 #include "report/object_results.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -25,10 +25,10 @@ struct RecordedRun {
   size_t frames = 0;  // the first frames of the sequence, which the run was given
   const Trajectory* trajectory = nullptr;
   const ObjectResults* objects = nullptr;
+  const Scene* scene = nullptr;  // of the objects
   // The frames as they were when they were tracked. If there are any, the transforms are theirs and
   // lead over the odometry; else they are the poses of the trajectory.
   std::span<const TrackedFrame> live = {};
-  const std::optional<Trajectory>* groundtruth = nullptr;  // which may tell what is upwards
 };
 
 // Writes the run as an MCAP file with messages of ROS 2 (docs/bags.md), in the order of their

@@ -19,12 +19,11 @@ namespace hullslam {
 //   is the one nearest to the median of their positions. Continuous symmetries about another axis
 //   than x, y or z are left out. A body whose visible share is below 0.1 in all images is not
 //   counted (the bound of BOP's targets). The class is the name of the model, such as obj_000002.
-// - the folder obj_offline of a sequence of Cube-Diorama, in the form that RO-MAP gave it (Han et
-// al.
-//   2023): a text file for each object, 0.txt and so on. After a comment it has a line `class tx ty
-//   tz qx qy qz qw` (world from object, m) with the half axes of the box, or with its two corners
-//   in the frame of the object, xmin ymin zmin xmax ymax zmax; then a line `stamp x y height width`
-//   for each image that shows the object. The class is a number, of COCO from 0.
+// - the folder obj_offline of a sequence of Cube-Diorama, in the form of RO-MAP (Han et al. 2023):
+//   a text file for each object, 0.txt and so on. After a comment it has a line `class tx ty tz qx
+//   qy qz qw` (world from object, m) with the half axes of the box, or with its two corners in the
+//   frame of the object, xmin ymin zmin xmax ymax zmax; then a line `stamp x y height width` for
+//   each image that shows the object. The class is a number, of COCO from 0.
 // Throws InputError that names the file and the key or line, for missing and unknown keys, numbers
 // that cannot be, rotations that are mirrored or not of unit length, repeated ids, and if there is
 // no body.

@@ -81,7 +81,6 @@ void WriteFiles(const SlamRun& run, const RunContent& content, RunSummary summar
   WriteRunFiles({.content = content,
                  .sequence = run.sequence,
                  .options = run.settings.options,
-                 .groundtruth = run.groundtruth,
                  .session = SessionTitle(run.arguments, run.earlier_sessions),
                  .has_objects = run.masks.format().has_value()},
                 output);
@@ -95,8 +94,8 @@ void WriteFiles(const SlamRun& run, const RunContent& content, RunSummary summar
 int FinishSlam(const SlamRun& run, const RunResult& result) {
   const RunArguments& arguments = run.arguments;
   const SystemOptions& options = run.settings.options;
-  const RunContent content =
-      CollectContent(run.system, arguments.sequence, run.earlier_sessions, arguments.keep_islands);
+  const RunContent content = CollectContent(run.system, arguments.sequence, run.groundtruth,
+                                            run.earlier_sessions, arguments.keep_islands);
   const RunSummary summary = SummarizeAll(run, result, content);
   WriteFiles(run, content, summary);
   const std::string unsaved = SaveMap(arguments, options, *content.map);
@@ -109,8 +108,8 @@ int FinishSlam(const SlamRun& run, const RunResult& result) {
                             .frames = result.given,
                             .trajectory = &content.trajectory,
                             .objects = &content.objects,
-                            .live = result.live,
-                            .groundtruth = &run.groundtruth});
+                            .scene = &content.scene,
+                            .live = result.live});
   if (!arguments.quiet) {
     Print("{}{}results are in {}\n", DescribePriors(run.system.frames()),
           DescribeRun(summary, content.objects, arguments.sensor, arguments.keep_islands),

@@ -11,7 +11,7 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
-#include "mesh/make_mesh.h"
+#include "mesh/make_depth_view.h"
 
 namespace hullslam {
 

@@ -63,7 +63,7 @@ bool IsContradicted(const Frame& frame, const Map& map, const TrackingContext& c
 
 // Whether neither landmarks nor objects alone confirm a pose that objects began. Landmarks were
 // searched near it, so some agree by chance: up to 27 with wrong poses from shifted masks.
-bool IsConfirmedByHalves(const TrackingContext& context, const PoseEstimate& estimate) {
+bool IsBarelyConfirmed(const TrackingContext& context, const PoseEstimate& estimate) {
   return estimate.inliers < context.min_relocalisation_inliers() &&
          PoseEstimate::kLandmarksPerObject * estimate.used_objects < context.options.min_inliers;
 }
@@ -130,7 +130,7 @@ PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingC
     if (inliers < context.options.min_inliers ||
         tracking.estimate.corner_sigma > kMostCornerSigma ||
         (context.is_wide && CanBeChance(frame, map, context, tracking)) ||
-        (is_by_objects && IsConfirmedByHalves(context, tracking.estimate)) ||
+        (is_by_objects && IsBarelyConfirmed(context, tracking.estimate)) ||
         (is_new_place && IsContradicted(frame, map, context, tracking)) ||
         IsDoubted(frame, map, context, tracking)) {
       search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);
