@@ -90,10 +90,12 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
   return static_cast<double>(found) >= kLeastFound * static_cast<double>(landmarks);
 }
 
-constexpr double kMatureTime = 60.0;  // s
-constexpr int kMatureViews = 3;
+constexpr double kMatureTime = 60.0;    // s
 constexpr double kSimilarAngle = 0.26;  // rad, between two directions to a point: 15 degrees
 constexpr double kSimilarZoom = 0.35;   // logarithm of the ratio of distances
+// A keyframe is redundant if this share of its landmarks is seen by so many others (CullKeyframes).
+constexpr double kRedundantShare = 0.9;
+constexpr int kOtherObservers = 4;
 
 // Whether a keyframe shows most of the points from a similar direction and distance.
 bool ShowsSimilarly(const Sensor& sensor, const View& view, const Rigid3& keyframe_from_frame) {
@@ -208,19 +210,33 @@ bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
       !CoversTheImage(sensor, frame, estimate.landmarks)) {
     return false;
   }
+  const auto is_old = [&](KeyframeId id) {
+    const Frame& other = *map.keyframes().At(id).frame;
+    return other.id >= first_of_session && frame.timestamp - other.timestamp > kMatureTime;
+  };
+  int found = 0;
+  int redundant = 0;
+  for (const LandmarkId id : estimate.landmarks) {
+    const Landmark* const landmark = id.IsValid() ? map.landmarks().Find(id) : nullptr;
+    if (landmark != nullptr) {
+      ++found;
+      const auto observers =
+          std::ranges::count_if(landmark->observations, is_old, &Observation::keyframe);
+      redundant += observers >= kOtherObservers ? 1 : 0;
+    }
+  }
+  if (redundant < kRedundantShare * found) {
+    return false;
+  }
   const View view = ViewOf(map, estimate);
   const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
   const auto is_similar = [&](KeyframeId id) {
-    const Keyframe& keyframe = map.keyframes().At(id);
-    return keyframe.frame->id >= first_of_session &&
-           frame.timestamp - keyframe.frame->timestamp > kMatureTime &&
-           ShowsSimilarly(sensor, view, keyframe.cam_from_world * world_from_cam);
+    const Rigid3& cam_from_world = map.keyframes().At(id).cam_from_world;
+    return is_old(id) && ShowsSimilarly(sensor, view, cam_from_world * world_from_cam);
   };
-  int similar = is_similar(tracking.reference) ? 1 : 0;
-  for (const Covisible& other : map.keyframes().At(tracking.reference).covisible) {
-    similar += similar < kMatureViews && is_similar(other.keyframe) ? 1 : 0;
-  }
-  return similar >= kMatureViews;
+  return is_similar(tracking.reference) ||
+         std::ranges::any_of(map.keyframes().At(tracking.reference).covisible, is_similar,
+                             &Covisible::keyframe);
 }
 
 int LastingChanges::Follow(const Frame& frame, const Map& map, const TrackingContext& context,

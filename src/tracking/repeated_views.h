@@ -46,11 +46,13 @@ class JoinRequests {
 bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, FrameId first_of_session,
                  KeyframeId reference, const PoseEstimate& estimate);
 
-// Whether the map is mature where the camera is: at least three keyframes of this session that are
-// more than a minute older show most of what the frame finds, from a similar direction and
-// distance; the frame finds at least half of the landmarks that should be visible (a place that is
-// mapped by day and by lamp shows one half at a time); and all parts of the image show landmarks.
-// A new keyframe would add nothing to such a map.
+// Whether the map is mature where the camera is, so that a keyframe would add nothing and would be
+// removed again as redundant (CullKeyframes): nine tenths of the landmarks that the frame finds are
+// each seen by at least four keyframes of this session that are more than a minute older, so none
+// are new, as at the end of a lap that is not yet tied to its beginning; one of these keyframes
+// shows most of them from a similar direction and distance; the frame finds at least half of the
+// landmarks that should be visible (a place that is mapped by day and by lamp shows one half at a
+// time); and all parts of the image show landmarks.
 bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
                   FrameId first_of_session, const LocalTracking& tracking);
 

@@ -178,11 +178,31 @@ class WellMapped : public testing::Test {
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 2, 4, 6, 8});
 };
 
-TEST_F(WellMapped, IsAPlaceThatSeveralOldKeyframesShow) {
+TEST_F(WellMapped, IsAPlaceThatEnoughOldKeyframesShow) {
   EXPECT_TRUE(Is(Rigid3(), 100.0));
   EXPECT_TRUE(Is(Moved(0.3), 100.0)) << "on another course";
   EXPECT_FALSE(Is(Rigid3(), 50.0)) << "a run of a minute is as it was";
   EXPECT_FALSE(Is(Moved(0.0, 3.0), 100.0)) << "from much farther away";
+}
+
+TEST_F(WellMapped, StaysSoUntilAKeyframeThereWouldNotBeRedundant) {
+  made_.map.CullKeyframe(KeyframeId(1));
+  EXPECT_TRUE(Is(Rigid3(), 100.0)) << "four keyframes are left";
+  made_.map.CullKeyframe(KeyframeId(3));
+  EXPECT_FALSE(Is(Rigid3(), 100.0));
+}
+
+// As at the end of a lap, where the landmarks of the beginning are not yet tied to new ones.
+TEST_F(WellMapped, HasFewLandmarksThatOldKeyframesDoNotShow) {
+  made_.map.CullKeyframe(KeyframeId(1));
+  ASSERT_TRUE(Is(Rigid3(), 100.0));
+  const std::vector<LandmarkId> landmarks = made_.map.keyframes().At(KeyframeId(3)).landmarks;
+  for (size_t i = 0; i < landmarks.size(); i += 7) {
+    if (landmarks[i].IsValid()) {
+      made_.map.RemoveObservation(landmarks[i], KeyframeId(3));
+    }
+  }
+  EXPECT_FALSE(Is(Rigid3(), 100.0));
 }
 
 TEST_F(WellMapped, HalfOfTheLandmarksMustBeFound) {
