@@ -215,6 +215,17 @@ std::filesystem::path FollowLinks(std::filesystem::path path) {
   FailWriting(path, ELOOP);
 }
 
+// Waits until the disk knows the new name of a file, because a power cut could bring the earlier
+// one back. Some file systems cannot do this; the file is complete there nevertheless.
+void SyncFolder(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    ::fsync(descriptor);
+    ::close(descriptor);
+  }
+}
+
 void CheckTarget(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -267,6 +278,7 @@ void StagedFile::Commit() {
   if (failure != 0) {
     FailWriting(path_, failure);
   }
+  SyncFolder(path_);
 }
 
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {

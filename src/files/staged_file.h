@@ -85,7 +85,7 @@ class StagedFile {
 
   void Write(std::string_view bytes);
   // Waits until the disk has everything, because some disks only then report that they are full,
-  // and replaces the earlier file. To be called once, after the last Write.
+  // replaces the earlier file, and waits for that. To be called once, after the last Write.
   void Commit();
 
  private:
