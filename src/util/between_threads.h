@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace hullslam {
 
@@ -59,14 +62,19 @@ class Mailbox {
 };
 
 // The newest version of an immutable value: one thread publishes, any thread reads. A version stays
-// alive as long as a reader holds a pointer to it.
+// alive as long as a reader holds a pointer to it. The publisher frees it, with a later version:
+// freeing may take long, and readers must not wait for it.
 template <typename Value>
 class Published {
  public:
   void Publish(std::shared_ptr<const Value> value) {
-    // The old version is released outside the lock: freeing it may take long.
+    std::vector<std::shared_ptr<const Value>> unused;  // freed outside the lock
     const std::lock_guard lock(mutex_);
-    value_.swap(value);
+    former_.push_back(std::exchange(value_, std::move(value)));
+    const auto begin = std::partition(former_.begin(), former_.end(),
+                                      [](const auto& version) { return version.use_count() > 1; });
+    unused.assign(std::move_iterator(begin), std::move_iterator(former_.end()));
+    former_.erase(begin, former_.end());
   }
 
   // Null before the first Publish.
@@ -78,6 +86,7 @@ class Published {
  private:
   mutable std::mutex mutex_;
   std::shared_ptr<const Value> value_;
+  std::vector<std::shared_ptr<const Value>> former_;  // that readers held when they were replaced
 };
 
 }  // namespace hullslam

@@ -99,14 +99,18 @@ TEST(Published, GivesTheNewest) {
   EXPECT_EQ(*published.Get(), 2);
 }
 
-TEST(Published, ReadersKeepTheirVersionAndOldOnesAreFreed) {
+TEST(Published, ReadersKeepTheirVersionAndThePublisherFreesIt) {
   Published<int> published;
   published.Publish(std::make_shared<const int>(1));
   std::shared_ptr<const int> kept = published.Get();
   const std::weak_ptr<const int> watched = kept;
   published.Publish(std::make_shared<const int>(2));
   EXPECT_EQ(*kept, 1);
+  published.Publish(std::make_shared<const int>(3));
+  EXPECT_EQ(*kept, 1);
   kept.reset();
+  EXPECT_FALSE(watched.expired()) << "the reader would have to wait until it is freed";
+  published.Publish(std::make_shared<const int>(4));
   EXPECT_TRUE(watched.expired());
 }
 
