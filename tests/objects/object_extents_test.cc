@@ -197,12 +197,12 @@ TEST_F(KnownSizes, AnObjectsOwnSizeCountsBeforeThatOfItsClass) {
   EXPECT_EQ(MeasureScale(map_, sensor_, {}).objects, 0u);
 }
 
-// The object with more observations has the median on its side; if both have as many, it lies
-// between them.
+// The object with more observations has the median on its side; if both have as many, the larger
+// unit counts.
 TEST_F(KnownSizes, ContradictingSizesGiveTheMedianOfTheObservations) {
   Map("keyboard", 0.25).known_size = 0.50;  // 2 m
   Map("cup", 0.10).known_size = 0.30;       // 3 m
-  EXPECT_NEAR(MeasureScale(map_, sensor_, {}).metres_per_unit, 2.5, 1e-3);
+  EXPECT_NEAR(MeasureScale(map_, sensor_, {}).metres_per_unit, 3.0, 1e-3);
   map_.RemoveObservation(ObjectId(1), KeyframeId(12));
   const KnownScale scale = MeasureScale(map_, sensor_, {});
   EXPECT_EQ(scale.objects, 2u);

@@ -735,6 +735,7 @@ class CupRun {
     static const auto vocabulary = SharedVocabulary(8, 3);  // for relocalisation
     options.vocabulary = vocabulary;
     options.loop.enabled = false;
+    options.mapping.cull_keyframes = false;  // a size needs ten observations
     return options;
   }
   System& system() { return system_; }
@@ -746,10 +747,10 @@ class CupRun {
   void TrackUntil(const Condition& is_done) {
     for (int i = 0; i < 3000 && !is_done(); ++i, ++next_) {
       BuiltFrame built;
-      built.frame = std::make_unique<Frame>(*world_.Observe(next_).frame);
+      const Rigid3 pose = Pose(next_);
+      built.frame = std::make_unique<Frame>(*world_.Observe(FrameId(next_), pose).frame);
       built.frame->words = Options().vocabulary->WordsOf(built.frame->features.descriptors);
-      built.frame->detections.push_back(
-          Detect(cup_, world_.sensor(), SyntheticWorld::CamFromWorld(next_)));
+      built.frame->detections.push_back(Detect(cup_, world_.sensor(), pose));
       built.frame->detections.back().points.clear();
       system_.Track(std::move(built));
     }
@@ -782,6 +783,12 @@ class CupRun {
   }
 
  private:
+  // On the path of the synthetic world, but looking to the left and to the right, so that points
+  // leave the image.
+  static Rigid3 Pose(uint32_t index) {
+    const Eigen::Vector3d centre = Inverse(SyntheticWorld::CamFromWorld(index)).translation;
+    return SyntheticWorld::LookAt(centre, {1.2 * std::sin(0.1 * index), 0.0, 4.0});
+  }
   std::pair<ObjectId, size_t> Cup() const {
     std::pair<ObjectId, size_t> most;
     const std::shared_ptr<const Map> map = system_.map();
