@@ -298,6 +298,9 @@ class MapObject:
     def is_locked(self) -> bool:
         """Whether System.lock_object() has locked it."""
     @property
+    def known_size(self) -> float:
+        """The longest side by System.set_object_size(), m; 0 if there is none."""
+    @property
     def votes(self) -> dict[str, float]:
         """The sum of the scores of each class."""
     @property
@@ -562,6 +565,12 @@ class System:
         """Locks an object: it keeps its shape, its place relative to the world around it and
         its id, whatever is seen; a candidate is mapped first. May be called and raises as
         name_object().
+        """
+    def set_object_size(self, id: int, longest_side: float) -> None:
+        """Says how long the longest side of an object is, 0.001 to 100 m. Saved maps keep it; 0
+        takes it back. A monocular map then gets the metre as its unit, as with
+        objects.sizes, from this moment on if the object has been seen often enough. May be
+        called and raises as name_object().
         """
     def delete_object(self, id: int) -> None:
         """Removes an object and its observations. Later masks of the thing may be mapped as a

@@ -200,6 +200,9 @@ void BindObject(py::module_& module) {
           "is_locked", [](const MapObject& o) { return o.object.is_locked; },
           "Whether System.lock_object() has locked it.")
       .def_property_readonly(
+          "known_size", [](const MapObject& o) { return o.object.known_size; },
+          "The longest side by System.set_object_size(), m; 0 if there is none.")
+      .def_property_readonly(
           "votes", [](const MapObject& o) { return o.object.votes; },
           "The sum of the scores of each class.")
       .def_property_readonly(

@@ -156,6 +156,12 @@ void LockObject(LiveSystem& system, int64_t id, bool locked) {
       [&] { system.EditObject(id, [&](System& s, ObjectId o) { s.LockObject(o, locked); }); });
 }
 
+void SetObjectSize(LiveSystem& system, int64_t id, double longest_side) {
+  WithoutGil([&] {
+    system.EditObject(id, [&](System& s, ObjectId o) { s.SetObjectSize(o, longest_side); });
+  });
+}
+
 void DeleteObject(LiveSystem& system, int64_t id) {
   WithoutGil([&] { system.EditObject(id, [](System& s, ObjectId o) { s.DeleteObject(o); }); });
 }
@@ -319,6 +325,11 @@ void BindSystem(py::module_& module) {
            "Locks an object: it keeps its shape, its place relative to the world around it and\n"
            "its id, whatever is seen; a candidate is mapped first. May be called and raises as\n"
            "name_object().")
+      .def("set_object_size", &SetObjectSize, py::arg("id"), py::arg("longest_side"),
+           "Says how long the longest side of an object is, 0.001 to 100 m. Saved maps keep it; 0\n"
+           "takes it back. A monocular map then gets the metre as its unit, as with\n"
+           "objects.sizes, from this moment on if the object has been seen often enough. May be\n"
+           "called and raises as name_object().")
       .def("delete_object", &DeleteObject, py::arg("id"),
            "Removes an object and its observations. Later masks of the thing may be mapped as a\n"
            "new object. May be called and raises as name_object().")

@@ -236,6 +236,7 @@ void Map::ReplaceObject(ObjectId object, ObjectId by) {
   changed.found += old.found;
   changed.name = changed.name.empty() ? old.name : changed.name;
   changed.is_locked |= old.is_locked;
+  changed.known_size = changed.known_size > 0.0 ? changed.known_size : old.known_size;
   replaced_objects_.Add(object, by, revision_);
 }
 

@@ -20,4 +20,8 @@ bool ObjectLandmark::IsName(std::string_view text) {
   return text.size() <= kMostBytes && text == Printable(text);
 }
 
+bool ObjectLandmark::IsSize(double longest_side) {
+  return longest_side >= 1e-3 && longest_side <= 100.0;
+}
+
 }  // namespace hullslam

@@ -122,8 +122,8 @@ std::vector<MisfitSample> ReadSamples(ByteReader& in) {
   return samples;
 }
 
-// The bits of the first byte of an object. Its name comes last, if it has one.
-enum ObjectBits : uint8_t { kMappedBit = 1, kNamedBit = 2, kLockedBit = 4, kAllBits = 7 };
+// The bits of the first byte of an object. Its name and its known size come last, if it has them.
+enum ObjectBits : uint8_t { kMappedBit = 1, kNamedBit = 2, kLockedBit = 4, kSizedBit = 8 };
 
 }  // namespace
 
@@ -236,7 +236,8 @@ void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
   out.Put(id.value);
   out.Put(static_cast<uint8_t>((object.state == ObjectState::kMapped ? kMappedBit : 0) |
                                (object.name.empty() ? 0 : kNamedBit) |
-                               (object.is_locked ? kLockedBit : 0)));
+                               (object.is_locked ? kLockedBit : 0) |
+                               (object.known_size > 0.0 ? kSizedBit : 0)));
   out.PutFlag(object.has_shape);
   WriteEllipsoid(object.ellipsoid, out);
   WriteEllipsoid(object.start, out);
@@ -251,6 +252,9 @@ void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
   if (!object.name.empty()) {
     out.PutText(object.name);
   }
+  if (object.known_size > 0.0) {
+    out.Put(object.known_size);
+  }
 }
 
 void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
@@ -259,7 +263,7 @@ void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
              "has an id that is out of order");
   ObjectLandmark object;
   const auto bits = in.Get<uint8_t>();
-  in.Require(bits <= kAllBits, "has a state that is none");
+  in.Require(bits < 2 * kSizedBit, "has a state that is none");
   object.state = (bits & kMappedBit) != 0 ? ObjectState::kMapped : ObjectState::kCandidate;
   object.is_locked = (bits & kLockedBit) != 0;
   object.has_shape = in.GetFlag();
@@ -277,6 +281,11 @@ void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
     object.name = in.GetText();
     in.Require(!object.name.empty() && ObjectLandmark::IsName(object.name),
                "has a name that is empty, too long or not printable UTF-8");
+  }
+  if ((bits & kSizedBit) != 0) {
+    object.known_size = in.Get<double>();
+    in.Require(ObjectLandmark::IsSize(object.known_size),
+               "has a known size that is not from 0.001 to 100 m");
   }
   tables.objects.Put(id, std::move(object));
 }

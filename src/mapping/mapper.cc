@@ -30,8 +30,7 @@ constexpr double kScaleTolerance = 0.01;
 size_t CountSizedKeyframes(const Map& map, const std::map<std::string, double>& sizes) {
   size_t views = 0;
   map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
-    const bool is_sized = object.state == ObjectState::kMapped && sizes.contains(object.Label());
-    views += is_sized ? object.observations.size() : 0;
+    views += KnownSize(object, sizes) > 0.0 ? object.observations.size() : 0;
   });
   return views;
 }
@@ -159,10 +158,15 @@ bool Mapper::Apply(const ObjectEdit& edit, const Cancellation*) {
   ObjectLandmark& object = map_.MutableObject(id);
   object.name = edit.name.value_or(object.name);
   object.is_locked = edit.is_locked.value_or(object.is_locked);
+  object.known_size = edit.known_size.value_or(object.known_size);
   if (edit.is_deleted) {
     map_.EraseObject(id);
   }
   PublishSnapshot();
+  if (edit.known_size) {
+    sized_keyframes_ = 0;
+    FollowKnownSizes(session_.has_value());  // a loaded map may get no keyframes
+  }
   return true;
 }
 
@@ -338,12 +342,12 @@ std::set<ObjectId> Mapper::SplitReplacedObjects() {
 // twice as often.
 void Mapper::FollowKnownSizes(bool is_final) {
   const std::map<std::string, double>& sizes = object_options_.sizes;
-  if (!sensor_.IsMonocular() || !object_options_.enabled || sizes.empty()) {
+  if (!sensor_.IsMonocular() || !object_options_.enabled) {
     return;
   }
   const size_t views = CountSizedKeyframes(map_, sizes);
   const bool is_due = is_final || views >= std::max(kMinSizedKeyframes, 2 * sized_keyframes_);
-  if (!is_due || Islands(map_).size() != 1) {
+  if (views == 0 || !is_due || Islands(map_).size() != 1) {
     return;  // each island has its own unit of length
   }
   const ScopedTimer timer(times_, "known_sizes");

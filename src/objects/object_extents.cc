@@ -165,19 +165,29 @@ std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoi
   return extents.misfit <= kMaxMisfit ? std::optional(extents) : std::nullopt;
 }
 
+double KnownSize(const ObjectLandmark& object, const std::map<std::string, double>& sizes) {
+  if (object.state != ObjectState::kMapped) {
+    return 0.0;
+  }
+  if (object.known_size > 0.0 || sizes.empty()) {
+    return object.known_size;
+  }
+  const auto size = sizes.find(object.Label());
+  return size != sizes.end() ? size->second : 0.0;
+}
+
 KnownScale MeasureScale(const Map& map, const Sensor& sensor,
                         const std::map<std::string, double>& sizes) {
   std::vector<double> scales;  // one per observation
   size_t objects = 0;
   map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
-    const bool is_mapped = object.state == ObjectState::kMapped;
-    const auto size = is_mapped ? sizes.find(object.Label()) : sizes.end();
-    if (size == sizes.end()) {
+    const double size = KnownSize(object, sizes);
+    if (size <= 0.0) {
       return;
     }
     if (const auto extents =
             MeasureExtents(sensor, object.ellipsoid, ResolveObservations(map, object))) {
-      scales.insert(scales.end(), object.observations.size(), size->second / extents->sides.z());
+      scales.insert(scales.end(), object.observations.size(), size / extents->sides.z());
       ++objects;
     }
   });

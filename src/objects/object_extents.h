@@ -42,8 +42,11 @@ struct KnownScale {
   double metres_per_unit = 1.0;
 };
 
-// `sizes` has the length of the longest side (m) by class. An object has the class with most votes,
-// and its longest side is measured with objects/object_extents.h.
+// The known length of the longest side of a mapped object, m: its own, or else that of its class
+// (the one with most votes) in `sizes`. 0 if neither is known, and for a candidate.
+double KnownSize(const ObjectLandmark& object, const std::map<std::string, double>& sizes);
+
+// Compares the known sizes with the longest sides that MeasureExtents finds.
 KnownScale MeasureScale(const Map& map, const Sensor& sensor,
                         const std::map<std::string, double>& sizes);
 

@@ -38,6 +38,7 @@ ObjectResult ResultOfObject(const Map& map, ObjectId id, const ObjectLandmark& o
   reported.misfit_px = object.misfit_px;
   reported.name = object.name;
   reported.is_locked = object.is_locked;
+  reported.known_size = object.known_size;
   for (const ObjectObservation& observation : object.observations) {
     reported.observations.push_back(ResultOfObservation(map, observation));
   }

@@ -50,6 +50,7 @@ struct ObjectResult {
   double misfit_px = 0.0;
   std::string name;                             // given by a user; empty if there is none
   bool is_locked = false;                       // by a user
+  double known_size = 0.0;                      // ObjectLandmark::known_size
   std::vector<ObservationResult> observations;  // by increasing keyframe id
   ObjectFit fit;
 

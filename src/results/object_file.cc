@@ -144,6 +144,9 @@ Json ToJson(const ObjectResult& object) {
   if (object.is_locked) {
     json["locked"] = true;
   }
+  if (object.known_size > 0.0) {
+    json["known_size"] = object.known_size;
+  }
   return json;
 }
 

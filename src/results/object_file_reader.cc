@@ -133,6 +133,7 @@ ObjectResult ReadObject(const JsonNode& node) {
   object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
   object.name = node.Has("name") ? node.At("name").Text() : "";
   object.is_locked = node.Has("locked") && node.At("locked").Flag();
+  object.known_size = ReadOptional(node, "known_size", kMostMetres).value_or(0.0);
   return object;
 }
 

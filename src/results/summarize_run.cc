@@ -210,8 +210,11 @@ RunSummary SummarizeRun(const RunResult& result, const System& system,
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
     summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
-    if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
-      summary.map.known_sizes = system.sized_objects();
+    if (options.sensor == SensorKind::kMonocular) {
+      const size_t sized = system.sized_objects();
+      if (sized > 0 || !options.objects.sizes.empty()) {
+        summary.map.known_sizes = sized;
+      }
     }
   }
   if (options.sensor == SensorKind::kMonocular) {

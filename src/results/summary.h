@@ -97,7 +97,7 @@ struct MapSummary {
   // Median of the distances between keypoints and projected landmarks. Absent without a map.
   std::optional<double> reprojection_px = std::nullopt;
   // The number of objects of known size that determine the unit of length. Absent in RGB-D runs,
-  // and without objects.sizes.
+  // and without objects.sizes and objects of known size.
   std::optional<size_t> known_sizes = std::nullopt;
 };
 

@@ -303,6 +303,15 @@ void System::LockObject(ObjectId object, bool is_locked) {
   Edit({.object = object, .is_locked = is_locked});
 }
 
+void System::SetObjectSize(ObjectId object, double longest_side) {
+  if (longest_side != 0.0 && !ObjectLandmark::IsSize(longest_side)) {
+    throw InputError(fmt::format(
+        "the longest side of object {} is {:g} m; expected 0.001 to 100 m, or 0 to take it back",
+        object.value, longest_side));
+  }
+  Edit({.object = object, .known_size = longest_side});
+}
+
 void System::DeleteObject(ObjectId object) { Edit({.object = object, .is_deleted = true}); }
 
 void System::Edit(ObjectEdit edit) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "hullslam/map/map.h"
@@ -110,6 +111,14 @@ TEST(ObjectLandmark, ANameIsShortTextWithoutControlCharacters) {
   EXPECT_FALSE(ObjectLandmark::IsName("\xff"));
 }
 
+TEST(ObjectLandmark, ASizeIsFromOneMillimetreToAHundredMetres) {
+  EXPECT_TRUE(ObjectLandmark::IsSize(0.001));
+  EXPECT_TRUE(ObjectLandmark::IsSize(100.0));
+  for (const double wrong : {0.0, -0.5, 0.0009, 100.1, std::nan(""), HUGE_VAL}) {
+    EXPECT_FALSE(ObjectLandmark::IsSize(wrong)) << wrong;
+  }
+}
+
 TEST(ObjectLandmark, IsFixedOnceItIsLockedAndMapped) {
   ObjectLandmark object;
   object.is_locked = true;
@@ -118,18 +127,22 @@ TEST(ObjectLandmark, IsFixedOnceItIsLockedAndMapped) {
   EXPECT_TRUE(object.IsFixed());
 }
 
-TEST(ObjectsOfTheMap, HandTheirNameAndLockToTheObjectThatReplacesThem) {
+TEST(ObjectsOfTheMap, HandTheirNameLockAndSizeToTheObjectThatReplacesThem) {
   Map map;
   const ObjectId a = map.AddObject();
   const ObjectId b = map.AddObject();
   const ObjectId c = map.AddObject();
   map.MutableObject(a).name = "mine";
   map.MutableObject(a).is_locked = true;
+  map.MutableObject(a).known_size = 0.5;
   map.ReplaceObject(a, b);
   EXPECT_EQ(map.objects().At(b).name, "mine");
+  EXPECT_EQ(map.objects().At(b).known_size, 0.5);
   EXPECT_TRUE(map.objects().At(b).is_locked);
   map.MutableObject(c).name = "yours";
+  map.MutableObject(c).known_size = 0.7;
   map.ReplaceObject(c, b);
+  EXPECT_EQ(map.objects().At(b).known_size, 0.5);
   EXPECT_EQ(map.objects().At(b).name, "mine");
   EXPECT_TRUE(map.objects().At(b).is_locked);
 }

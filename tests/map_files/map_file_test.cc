@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <limits>
@@ -297,7 +298,7 @@ TEST_F(MapFileTest, LabelsAreMadePrintable) {
   EXPECT_EQ(read.objects().At(object).votes, (std::map<std::string, double>{{"cup?[2J", 1.625}}));
 }
 
-TEST_F(MapFileTest, NamesAndLocksAreKept) {
+TEST_F(MapFileTest, NamesLocksAndSizesAreKept) {
   Map map = SmallMap();
   const std::string without = Written(map);
   map.MutableObject(ObjectId(1)).name = "Lisa's cup \xc3\xbc";
@@ -306,19 +307,28 @@ TEST_F(MapFileTest, NamesAndLocksAreKept) {
   EXPECT_EQ(ReadMap(path_).map.objects().At(ObjectId(1)).name, "Lisa's cup \xc3\xbc");
   EXPECT_FALSE(ReadMap(path_).map.objects().At(ObjectId(1)).is_locked);
   map.MutableObject(ObjectId(1)).is_locked = true;
+  EXPECT_EQ(Written(map).size(), named.size());
+  map.MutableObject(ObjectId(1)).known_size = 0.465;
+  EXPECT_EQ(Written(map).size(), named.size() + 8) << "one number, at the end of the object";
   const Map read = ReadBack(map);
   EXPECT_TRUE(read.objects().At(ObjectId(1)).is_locked);
+  EXPECT_EQ(read.objects().At(ObjectId(1)).known_size, 0.465);
   EXPECT_EQ(Written(read), Written(map));
 }
 
 // ---- refusals
 
-TEST_F(MapFileTest, NamesAndStatesThatCannotBeAreRefused) {
+TEST_F(MapFileTest, NamesSizesAndStatesThatCannotBeAreRefused) {
   for (const std::string& name :
        {std::string(101, 'a'), std::string("a\nb"), std::string("\xff")}) {
     Map map = SmallMap();
     map.MutableObject(ObjectId(1)).name = name;
     ExpectRefusal(Written(map), {"name"});
+  }
+  for (const double size : {1e-4, 100.5, HUGE_VAL}) {
+    Map map = SmallMap();
+    map.MutableObject(ObjectId(1)).known_size = size;
+    ExpectRefusal(Written(map), {"known size", "0.001 to 100 m"});
   }
   Map map = SmallMap();
   const std::string free = Written(map);
@@ -328,7 +338,7 @@ TEST_F(MapFileTest, NamesAndStatesThatCannotBeAreRefused) {
   const auto state = static_cast<size_t>(
       std::mismatch(free.begin(), free.end(), locked.begin()).first - free.begin());
   std::string bad = locked;
-  bad[state] = 8;
+  bad[state] = 16;
   ExpectRefusal(WithChecksum(bad), {"state"});
   const size_t end = bad.size();
   bad[state] = static_cast<char>(locked[state] | 2);  // but no name follows

@@ -739,7 +739,7 @@ TEST_P(MapperWithoutMuchDepth, PointsWithoutDepthAreTriangulated) {
 // A monocular camera that looks at a cup. The unit of length of the first map is 2 m.
 class MapperKnownSizesTest : public testing::Test {
  protected:
-  void Run(const std::map<std::string, double>& sizes) {
+  void Run(const std::map<std::string, double>& sizes, uint32_t last = 160) {
     ObjectOptions objects;
     objects.sizes = sizes;
     mapper_ = std::make_unique<Mapper>(sensor_, MappingOptions{.cull_keyframes = false}, objects,
@@ -762,8 +762,17 @@ class MapperKnownSizesTest : public testing::Test {
       }
     }
     mapper_->Process(initial, nullptr);
-    for (uint32_t index = 20; index <= 160; index += 10) {
-      Request(index);
+    next_ = 20;
+    RunOn(last);
+  }
+  void Load(Map map) {
+    mapper_ = std::make_unique<Mapper>(sensor_, MappingOptions(), ObjectOptions(),
+                                       [this](auto now) { map_ = std::move(now); });
+    mapper_->Begin(std::move(map), {"second", FrameId(1000)});
+  }
+  void RunOn(uint32_t last) {
+    for (; next_ <= last; next_ += 10) {
+      Request(next_);
     }
   }
 
@@ -809,6 +818,7 @@ class MapperKnownSizesTest : public testing::Test {
     mapper_->Process(request, nullptr);
   }
 
+  uint32_t next_ = 20;  // frame of the path
   const SyntheticWorld world_{{.points = 400, .depth_share = 0.0}};
   const Sensor sensor_ = [this] {
     Sensor sensor = world_.sensor();
@@ -830,6 +840,53 @@ TEST_F(MapperKnownSizesTest, ASizeMakesTheUnitTheMetreDuringTheRun) {
   EXPECT_EQ(FindViolations(*map_), std::vector<std::string>());
   FinishMap(*mapper_);
   EXPECT_NEAR(Unit(), 1.0, 0.01);
+}
+
+TEST_F(MapperKnownSizesTest, ASizeThatIsToldLaterRescalesAtOnceAndTheLastOneCounts) {
+  Run({});
+  ASSERT_NEAR(Unit(), 2.0, 0.02);
+  const auto tell = [&](const ObjectEdit& edit) { mapper_->Process(edit, nullptr); };
+  tell({.object = ObjectId(0), .is_locked = true});  // a rescaling moves locked objects too
+  tell({.object = ObjectId(0), .known_size = 0.4});
+  EXPECT_NEAR(Unit(), 2.0, 0.02) << "as if the cup were half as large";
+  const uint32_t corrections = map_->correction_count();
+  tell({.object = ObjectId(0), .known_size = 0.8});
+  EXPECT_NEAR(Unit(), 1.0, 0.02);
+  EXPECT_EQ(map_->correction_count(), corrections + 1);
+  EXPECT_NEAR(map_->objects().At(ObjectId(0)).ellipsoid.half_axes.maxCoeff(), 0.4, 0.02);
+  EXPECT_EQ(FindViolations(*map_), std::vector<std::string>());
+  tell({.object = ObjectId(0), .name = "mine"});
+  EXPECT_EQ(map_->correction_count(), corrections + 1);
+  tell({.object = ObjectId(0), .known_size = 0.0});
+  EXPECT_NEAR(Unit(), 1.0, 0.02) << "the unit stays";
+  FinishMap(*mapper_);
+  EXPECT_NEAR(Unit(), 1.0, 0.02);
+}
+
+TEST_F(MapperKnownSizesTest, AnObjectThatIsNotMappedYetOrDeletedWaits) {
+  Run({}, 40);
+  ASSERT_TRUE(map_->objects().Contains(ObjectId(0)));
+  mapper_->Process(ObjectEdit{.object = ObjectId(0), .known_size = 0.8}, nullptr);
+  EXPECT_NEAR(Unit(), 2.0, 0.03) << "it has too few observations";
+  RunOn(160);
+  EXPECT_NEAR(Unit(), 1.0, 0.03);
+  mapper_->Process(ObjectEdit{.object = ObjectId(0), .known_size = 8.0, .is_deleted = true},
+                   nullptr);
+  EXPECT_NEAR(Unit(), 1.0, 0.03) << "a deleted object says nothing";
+}
+
+// Nothing comes after the edit when poses are only localised in a loaded map.
+TEST_F(MapperKnownSizesTest, InALoadedMapASizeCountsAtOnce) {
+  Run({});
+  ASSERT_NEAR(Unit(), 2.0, 0.03);
+  Map few = mapper_->Snapshot();
+  for (uint32_t i = 8; i < few.keyframes().NextId().value; ++i) {
+    few.RemoveObservation(ObjectId(0), KeyframeId(i));
+  }
+  Load(std::move(few));
+  mapper_->Process(ObjectEdit{.object = ObjectId(0), .known_size = 0.8}, nullptr);
+  EXPECT_NEAR(Unit(), 1.0, 0.03);
+  EXPECT_FALSE(mapper_->HasChangedMap());
 }
 
 TEST_F(MapperTest, AnEditReachesTheObjectThatReplacedItsOwn) {

@@ -182,6 +182,33 @@ TEST_F(KnownSizes, AnObjectCountsAsOftenAsItWasObserved) {
   EXPECT_NEAR(scale.metres_per_unit, 2.0, 1e-3);
 }
 
+TEST_F(KnownSizes, AnObjectsOwnSizeCountsBeforeThatOfItsClass) {
+  ObjectLandmark& keyboard = Map("keyboard", 0.25);
+  keyboard.known_size = 0.75;
+  for (const auto& sizes : {std::map<std::string, double>(), {{"keyboard", 0.5}}}) {
+    EXPECT_EQ(KnownSize(keyboard, sizes), 0.75);
+    EXPECT_NEAR(MeasureScale(map_, sensor_, sizes).metres_per_unit, 3.0, 1e-3);
+  }
+  keyboard.known_size = 0.0;
+  EXPECT_EQ(KnownSize(keyboard, {{"keyboard", 0.5}}), 0.5);
+  keyboard.known_size = 0.75;
+  keyboard.state = ObjectState::kCandidate;
+  EXPECT_EQ(KnownSize(keyboard, {}), 0.0);
+  EXPECT_EQ(MeasureScale(map_, sensor_, {}).objects, 0u);
+}
+
+// The object with more observations has the median on its side; if both have as many, the larger
+// unit counts.
+TEST_F(KnownSizes, ContradictingSizesGiveTheMedianOfTheObservations) {
+  Map("keyboard", 0.25).known_size = 0.50;  // 2 m
+  Map("cup", 0.10).known_size = 0.30;       // 3 m
+  EXPECT_NEAR(MeasureScale(map_, sensor_, {}).metres_per_unit, 3.0, 1e-3);
+  map_.RemoveObservation(ObjectId(1), KeyframeId(12));
+  const KnownScale scale = MeasureScale(map_, sensor_, {});
+  EXPECT_EQ(scale.objects, 2u);
+  EXPECT_NEAR(scale.metres_per_unit, 2.0, 1e-3);
+}
+
 TEST_F(KnownSizes, OtherClassesAndCandidatesDoNotCount) {
   Map("cup", 0.25);
   Map("keyboard", 0.25).state = ObjectState::kCandidate;

@@ -261,27 +261,32 @@ def test_masks_may_come_after_their_frame(slam, wall):
         slam.add_masks(first.frame, wrong)
 
 
-def test_objects_have_names_and_locks(settings, slam, wall, tmp_path):
+def test_objects_have_names_locks_and_sizes(settings, slam, wall, tmp_path):
     square = hullslam.Masks.from_outlines([[(100, 80), (200, 80), (200, 160), (100, 160)]], ["cup"])
     slam.track(wall.images[0], wall.depth, square, timestamp=0.0)
     [thing] = slam.map.candidates
     assert (thing.name, thing.is_locked) == ("", False)
     slam.name_object(thing.id, "Großmutters")
     slam.lock_object(thing.id)
+    slam.set_object_size(thing.id, 0.465)
     for wrong in (-1, 77, 2**40):
         with pytest.raises(hullslam.InputError, match=f"no object {wrong}"):
             slam.delete_object(wrong)
     with pytest.raises(hullslam.InputError, match="100"):
         slam.name_object(thing.id, "ß" * 51)
+    for wrong in (-1.0, 100.5, float("nan")):
+        with pytest.raises(hullslam.InputError, match="0.001 to 100 m"):
+            slam.set_object_size(thing.id, longest_side=wrong)
     slam.save_map(tmp_path / "named.map")
 
     later = hullslam.System(settings, map=tmp_path / "named.map", localization=True)
     [thing] = later.map.candidates
-    assert (thing.name, thing.is_locked) == ("Großmutters", True)
+    assert (thing.name, thing.is_locked, thing.known_size) == ("Großmutters", True, 0.465)
     later.lock_object(thing.id, locked=False)
     later.name_object(thing.id, "")
+    later.set_object_size(thing.id, 0)
     [thing] = later.map.candidates
-    assert (thing.name, thing.is_locked) == ("", False)
+    assert (thing.name, thing.is_locked, thing.known_size) == ("", False, 0)
     later.delete_object(thing.id)
     assert later.map.candidates == []
     later.finish()

@@ -87,21 +87,26 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(observation["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
 }
 
-TEST(ObjectFile, NamesAndLocksAreWrittenWhereThereAreAny) {
+TEST(ObjectFile, NamesLocksAndSizesAreWrittenWhereThereAreAny) {
   const TemporaryFolder folder;
   ObjectResults report = MakeReport();
   report.objects[1].name = "Lisa's";
   report.objects[1].is_locked = true;
+  report.objects[1].known_size = 0.465;
   const std::string text = FormatObjects(report);
   const Json json = Json::parse(text);
   EXPECT_FALSE(json["objects"][0].contains("name") || json["objects"][0].contains("locked"));
   EXPECT_EQ(json["objects"][1]["name"], "Lisa's");
   EXPECT_EQ(json["objects"][1]["locked"], true);
+  EXPECT_FALSE(json["objects"][0].contains("known_size"));
+  EXPECT_EQ(json["objects"][1]["known_size"], 0.465);
   folder.Write("objects_observations.json", FormatObservations(report));
   const ObjectResults read = ReadObjects(folder.Write("objects.json", text));
   EXPECT_EQ(read.objects[0].NameAtEnd(), "");
   EXPECT_EQ(read.objects[1].NameAtEnd(), "  Lisa's");
   EXPECT_TRUE(read.objects[1].is_locked);
+  EXPECT_EQ(read.objects[0].known_size, 0.0);
+  EXPECT_EQ(read.objects[1].known_size, 0.465);
 }
 
 TEST(ObjectFile, AnObjectOfTheSceneHasItsBoxAndItsFreeAxes) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/system.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -13,11 +14,14 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "map_files/invariants.h"
+#include "objects/made_objects.h"
 #include "support/expect_error.h"
 #include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"
@@ -679,7 +683,7 @@ TEST_P(SystemTest, AFrameWhoseLateMasksShowAnObjectBecomesAKeyframe) {
   EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
 }
 
-TEST_P(SystemTest, ObjectsAreNamedLockedAndDeletedAndFilesKeepIt) {
+TEST_P(SystemTest, ObjectsAreNamedLockedSizedAndDeletedAndFilesKeepIt) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "map";
   {
@@ -689,6 +693,12 @@ TEST_P(SystemTest, ObjectsAreNamedLockedAndDeletedAndFilesKeepIt) {
     ASSERT_TRUE(system.map()->objects().Contains(ObjectId(0)));
     system.NameObject(ObjectId(0), "poster");
     system.LockObject(ObjectId(0), true);
+    system.SetObjectSize(ObjectId(0), 0.3);
+    ExpectInputError([&] { system.SetObjectSize(ObjectId(7), 0.3); }, {"no object 7"});
+    for (const double wrong : {-0.3, 1e-4, 100.5, std::nan(""), HUGE_VAL}) {
+      ExpectInputError([&] { system.SetObjectSize(ObjectId(0), wrong); },
+                       {"object 0", fmt::format("{:g} m", wrong), "0.001 to 100 m"});
+    }
     ExpectInputError([&] { system.LockObject(ObjectId(7), true); }, {"no object 7"});
     ExpectInputError([&] { system.DeleteObject(ObjectId(7)); }, {"no object 7"});
     ExpectInputError([&] { system.NameObject(ObjectId(0), "a\tb"); }, {"a?b", "object 0"});
@@ -700,6 +710,7 @@ TEST_P(SystemTest, ObjectsAreNamedLockedAndDeletedAndFilesKeepIt) {
                {.map = ReadMap(path, Wall::Options()), .localization_only = true});
   EXPECT_EQ(later.map()->objects().At(ObjectId(0)).name, "poster");
   EXPECT_TRUE(later.map()->objects().At(ObjectId(0)).is_locked);
+  EXPECT_EQ(later.map()->objects().At(ObjectId(0)).known_size, 0.3);
   later.NameObject(ObjectId(0), "");
   later.LockObject(ObjectId(0), false);
   later.DeleteObject(ObjectId(0));
@@ -708,6 +719,129 @@ TEST_P(SystemTest, ObjectsAreNamedLockedAndDeletedAndFilesKeepIt) {
   EXPECT_EQ(FindViolations(*later.map()), std::vector<std::string>());
   later.Reset();
   EXPECT_EQ(later.map()->objects().At(ObjectId(0)).name, "poster");
+}
+
+// A monocular camera that moves around a cup, whose longest side is 0.8 m.
+class CupRun {
+ public:
+  explicit CupRun(PipelineKind kind, SystemStart start = {})
+      : system_(Options(), kind, std::move(start)) {
+    system_.SetFrameCallback([this](const FrameReport& report) { Count(report.events); });
+  }
+  static SystemOptions Options() {
+    SystemOptions options;
+    options.camera = SyntheticSensor().camera;
+    options.sensor = SensorKind::kMonocular;
+    static const auto vocabulary = SharedVocabulary(8, 3);  // for relocalisation
+    options.vocabulary = vocabulary;
+    options.loop.enabled = false;
+    options.mapping.cull_keyframes = false;  // a size needs ten observations
+    return options;
+  }
+  System& system() { return system_; }
+  double rescaling() const { return rescaling_; }
+
+  // Tracks frames of the closed path until `is_done`. The mapper of the pipeline that never waits
+  // comes to its work at some time.
+  template <typename Condition>
+  void TrackUntil(const Condition& is_done) {
+    for (int i = 0; i < 3000 && !is_done(); ++i, ++next_) {
+      BuiltFrame built;
+      const Rigid3 pose = Pose(next_);
+      built.frame = std::make_unique<Frame>(*world_.Observe(FrameId(next_), pose).frame);
+      built.frame->words = Options().vocabulary->WordsOf(built.frame->features.descriptors);
+      built.frame->detections.push_back(Detect(cup_, world_.sensor(), pose));
+      built.frame->detections.back().points.clear();
+      system_.Track(std::move(built));
+    }
+    ASSERT_TRUE(is_done());
+  }
+  void Finish() {
+    system_.Finish();
+    Count(system_.events_at_end());
+    EXPECT_EQ(FindViolations(*system_.map()), std::vector<std::string>());
+  }
+  // The number of observations of the cup while it is mapped.
+  size_t Views() const { return Cup().second; }
+  void TellSize(double longest_side) { system_.SetObjectSize(Cup().first, longest_side); }
+
+  // The true length of the unit of the map, m, by the distances of the cameras.
+  double Unit() const {
+    const Trajectory trajectory = system_.trajectory();
+    double truth = 0.0;
+    double found = 0.0;
+    const auto true_centre = [](const StampedPose& pose) {
+      const double index = std::round(pose.timestamp * SyntheticSensor().frames_per_second);
+      return Eigen::Vector3d(Inverse(SyntheticWorld::CamFromWorld(index)).translation);
+    };
+    for (const StampedPose& pose : trajectory) {
+      truth += (true_centre(pose) - true_centre(trajectory.front())).norm();
+      found +=
+          (pose.world_from_cam.translation - trajectory.front().world_from_cam.translation).norm();
+    }
+    return truth / found;
+  }
+
+ private:
+  // On the path of the synthetic world, but looking to the left and to the right, so that points
+  // leave the image.
+  static Rigid3 Pose(uint32_t index) {
+    const Eigen::Vector3d centre = Inverse(SyntheticWorld::CamFromWorld(index)).translation;
+    return SyntheticWorld::LookAt(centre, {1.2 * std::sin(0.1 * index), 0.0, 4.0});
+  }
+  std::pair<ObjectId, size_t> Cup() const {
+    std::pair<ObjectId, size_t> most;
+    const std::shared_ptr<const Map> map = system_.map();
+    for (uint32_t i = 0; map != nullptr && i < map->objects().NextId().value; ++i) {
+      const ObjectLandmark* const object = map->objects().Find(ObjectId(i));
+      if (object != nullptr && object->state == ObjectState::kMapped &&
+          object->observations.size() > most.second) {
+        most = {ObjectId(i), object->observations.size()};
+      }
+    }
+    return most;
+  }
+  void Count(std::span<const MapEvent> events) {
+    for (const MapEvent& event : events) {
+      rescaling_ *= event.kind == MapEventKind::kRescaled ? event.scale : 1.0;
+    }
+  }
+
+  System system_;
+  uint32_t next_ = 0;
+  double rescaling_ = 1.0;
+  const SyntheticWorld world_{{.points = 500, .depth_share = 0.0}};
+  const MadeObject cup_ = MakeObject("cup", {0.0, 0.0, 4.0}, {0.25, 0.40, 0.30});
+};
+
+TEST_P(SystemTest, ASizeToldDuringAMonocularRunMakesTheUnitTheMetre) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  {
+    CupRun run(GetParam());
+    run.TrackUntil([&] { return run.Views() >= 12; });
+    EXPECT_EQ(run.rescaling(), 1.0);
+    const double unit = run.Unit();
+    EXPECT_GT(std::abs(unit - 1.0), 0.2) << "the unit is the depth of the first map";
+    WriteMap(path, *run.system().map(), MapSettingsOf(CupRun::Options()));
+    run.TellSize(0.8);
+    run.TrackUntil([&] { return run.rescaling() != 1.0; });
+    EXPECT_NEAR(run.rescaling(), unit, 0.05 * unit);
+    run.Finish();
+    EXPECT_NEAR(run.Unit(), 1.0, 0.03);
+    EXPECT_EQ(run.system().sized_objects(), 1u);
+  }
+  // In a map without a size, while poses are only localised.
+  CupRun later(GetParam(), {.map = ReadMap(path, CupRun::Options()), .localization_only = true});
+  later.TrackUntil([&] { return later.system().trajectory().size() >= 20; });
+  const double unit = later.Unit();
+  EXPECT_GT(std::abs(unit - 1.0), 0.2);
+  later.TellSize(0.8);
+  later.TrackUntil([&] { return later.rescaling() != 1.0; });
+  EXPECT_NEAR(later.rescaling(), unit, 0.05 * unit);
+  EXPECT_NEAR(later.Unit(), 1.0, 0.05);
+  later.Finish();
+  EXPECT_NEAR(later.Unit(), 1.0, 0.05);
 }
 
 // Nothing of the run before may be left: neither frames that await masks nor counts.

@@ -118,6 +118,7 @@ struct ObjectEdit {
   ObjectId object;
   std::optional<std::string> name = std::nullopt;  // ObjectLandmark::IsName
   std::optional<bool> is_locked = std::nullopt;
+  std::optional<double> known_size = std::nullopt;  // ObjectLandmark::IsSize, or 0 for none
   bool is_deleted = false;
 };
 

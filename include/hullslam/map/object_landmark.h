@@ -55,7 +55,8 @@ struct ObjectLandmark {
   int visible = 0;   // number of keyframes since it was mapped that found or should have shown it
   int found = 0;     // number of these that found it
   std::string name;  // given by a user; empty if there is none
-  bool is_locked = false;  // by a user, see IsFixed()
+  bool is_locked = false;   // by a user, see IsFixed()
+  double known_size = 0.0;  // longest side (m), given by a user; 0 if it is not known
 
   // Whether nothing but a correction of the map around it changes the state, the shape and the
   // misfit of the object. It is not removed, unless by a user or with its island. A locked
@@ -63,6 +64,8 @@ struct ObjectLandmark {
   bool IsFixed() const { return is_locked && state == ObjectState::kMapped; }
   // Whether a text can be a name: at most 100 bytes of UTF-8 without control characters.
   static bool IsName(std::string_view text);
+  // Whether a number can be a known size: from 0.001 to 100 m.
+  static bool IsSize(double longest_side);
   // The class with most votes; ties go to the first in the alphabet.
   const std::string& Label() const;
 };

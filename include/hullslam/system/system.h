@@ -146,9 +146,20 @@ class System {
   // observations, but later detections of the thing may be mapped as a new object. If the object
   // was fused into another one, that one is changed. In the pipelines with threads map() shows the
   // change when the mapper has come to it. To be called by the thread of Track. Throws InputError
-  // for an object that map() does not have and for another name, and CheckError after Finish.
+  // for an object that map() does not have, for another name and for another size, and CheckError
+  // after Finish.
+  //
+  // The size is that of the longest side, 0.001 to 100 m; 0 takes it back, and the unit of length
+  // stays. For this object it counts before the size of its class in ObjectOptions::sizes. So a
+  // monocular map gets the metre as its unit (the event kRescaled has the factor): at once if the
+  // objects of known size have ten observations, or any in a loaded map without new keyframes; else
+  // later, as with ObjectOptions::sizes. An object that is not mapped yet, or that cannot be
+  // measured, waits. If sizes contradict each other, the median over all observations counts. In a
+  // map of several islands, sizes wait until these are joined, or for the end. With another sensor
+  // the size is only kept with the object.
   void NameObject(ObjectId object, std::string name);
   void LockObject(ObjectId object, bool is_locked);
+  void SetObjectSize(ObjectId object, double longest_side);
   void DeleteObject(ObjectId object);
 
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
@@ -201,8 +212,9 @@ class System {
   const std::vector<LeftIsland>& left_islands() const { return left_islands_; }
   // What Finish() has done to the map. Before, each FrameReport has the events of its frame.
   const std::vector<MapEvent>& events_at_end() const { return events_at_end_; }
-  // The number of mapped objects that have a size in ObjectOptions::sizes and could be measured. If
-  // there are any, they set the unit of length of a monocular map to the metre.
+  // The number of mapped objects that have a known size (SetObjectSize, ObjectOptions::sizes) and
+  // could be measured. If there are any, they set the unit of length of a monocular map to the
+  // metre.
   size_t sized_objects() const;
   // The counts of masks. May be called like times().
   ObjectCounts object_counts() const;
