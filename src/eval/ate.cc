@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/util/check.h"
+
 namespace hullslam {
 
 ErrorStatistics SummarizeErrors(std::vector<double> errors) {
@@ -189,7 +191,10 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
 }
 
 NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
-                        std::span<const Eigen::Matrix<double, 6, 6>> covariances) {
+                        std::span<const Eigen::Matrix<double, 6, 6>> covariances,
+                        const TruthSigma& truth_sigma) {
+  Check(truth_sigma.translation >= 0.0 && truth_sigma.rotation >= 0.0,
+        "a standard deviation of the true trajectory is below 0");
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   constexpr double kMaxGap = 0.1;  // s
@@ -199,15 +204,19 @@ NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
     Rigid3 cam_from_world;
     Eigen::LLT<Matrix6d> covariance;
   };
+  Vector6d of_truth;
+  of_truth << Eigen::Vector3d::Constant(truth_sigma.rotation),
+      Eigen::Vector3d::Constant(truth_sigma.translation);
   std::vector<Pair> pairs;
   for (size_t i = 0; i < estimate.size(); ++i) {
     const auto truth = InterpolatePose(reference, estimate[i].timestamp, kMaxGap);
-    const Eigen::LLT<Matrix6d> factors(covariances[i]);
-    if (truth && factors.info() == Eigen::Success) {
-      pairs.push_back({Inverse(*truth), Inverse(estimate[i].world_from_cam), factors});
+    // A pose without covariance is the first one, which the others are relative to.
+    if (truth && Eigen::LLT<Matrix6d>(covariances[i]).info() == Eigen::Success) {
+      const Matrix6d of_both = covariances[i] + Matrix6d(of_truth.cwiseAbs2().asDiagonal());
+      pairs.push_back({Inverse(*truth), Inverse(estimate[i].world_from_cam), of_both.llt()});
     }
   }
-  NeesResult result{.poses = pairs.size(), .ratio = {}};
+  NeesResult result{.poses = pairs.size(), .ratio = {}, .rotation = {}, .translation = {}};
   if (pairs.empty()) {
     return result;
   }
@@ -227,10 +236,22 @@ NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
     world_from_truth = Retract(world_from_truth, hessian.ldlt().solve(gradient));
   }
   std::vector<double> ratios;
+  std::vector<double> rotations;
+  std::vector<double> translations;
   for (const Pair& pair : pairs) {
-    ratios.push_back(error(pair).dot(pair.covariance.solve(error(pair))) / 6.0);
+    const Vector6d off = error(pair);
+    const Matrix6d covariance = pair.covariance.reconstructedMatrix();
+    const auto of_part = [&](Eigen::Index first) {
+      const Eigen::Vector3d part = off.segment<3>(first);
+      return part.dot(covariance.block<3, 3>(first, first).llt().solve(part)) / 3.0;
+    };
+    ratios.push_back(off.dot(pair.covariance.solve(off)) / 6.0);
+    rotations.push_back(of_part(0));
+    translations.push_back(of_part(3));
   }
   result.ratio = SummarizeErrors(std::move(ratios));
+  result.rotation = SummarizeErrors(std::move(rotations));
+  result.translation = SummarizeErrors(std::move(translations));
   return result;
 }
 

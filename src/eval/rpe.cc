@@ -93,7 +93,8 @@ std::string DescribeSwappedRotations(const Trajectory& reference, const Trajecto
 
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
                                     const AteOptions& options,
-                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances) {
+                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances,
+                                    const TruthSigma& truth_sigma) {
   TrajectoryErrors errors{.options = options, .ate = EvaluateAte(reference, estimate, options)};
   if (!errors.ate.ok()) {
     return errors;
@@ -103,7 +104,7 @@ TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajector
                               .max_difference = options.max_difference};
   errors.rpe = EvaluateRpe(reference, estimate, motions);
   if (!covariances.empty()) {
-    errors.nees = EvaluateNees(reference, estimate, covariances);
+    errors.nees = EvaluateNees(reference, estimate, covariances, truth_sigma);
   }
   for (const std::string& warning :
        {DescribeMissingPairs(errors.ate),

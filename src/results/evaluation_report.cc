@@ -386,6 +386,8 @@ std::string TrajectoryErrorsJson(const TrajectoryErrors& errors) {
   if (errors.nees) {
     json["nees_over_6"] = {{"mean", errors.nees->ratio.mean},
                            {"median", errors.nees->ratio.median},
+                           {"rotation_over_3_mean", errors.nees->rotation.mean},
+                           {"translation_over_3_mean", errors.nees->translation.mean},
                            {"poses", errors.nees->poses}};
   }
   return json.dump(2);
@@ -435,8 +437,10 @@ std::string TrajectoryErrorsText(const TrajectoryErrors& errors) {
   }
   if (errors.nees) {
     text += fmt::format(
-        "{:<12} {:.2f} mean (1 if the covariances are right), {:.2f} median, {} poses\n",
-        "NEES / 6", errors.nees->ratio.mean, errors.nees->ratio.median, errors.nees->poses);
+        "{:<12} {:.2f} mean (1 if the covariances are right), {:.2f} median, {} poses\n"
+        "{:<12} {:.2f} mean of the rotation, {:.2f} of the position\n",
+        "NEES / 6", errors.nees->ratio.mean, errors.nees->ratio.median, errors.nees->poses,
+        "NEES / 3", errors.nees->rotation.mean, errors.nees->translation.mean);
   }
   return text;
 }

@@ -43,9 +43,11 @@ struct LastFrame {
   // A length of 1 in the odometry has this length in the map.
   double map_per_odometry = 1.0;
   double followed_change = 1.0;  // of the unit since `pose` was made, as FollowMap knows it
-  // The covariance of the pose by the frame's own measurements, and all of it; in the axes of the
-  // camera. 0 for a frame of the initial map.
+  // The covariance of the pose by the frame's own measurements if all errors are independent; with
+  // those that are shared (P of DriftModel); and all of it. In the axes of the camera. 0 for a
+  // frame of the initial map.
   Eigen::Matrix<double, 6, 6> measured_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> shared_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double median_depth = 0.0;  // of the landmarks
   // The motion by priors from this frame to the one that is tracked now (MotionAhead).

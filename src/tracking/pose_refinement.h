@@ -28,6 +28,14 @@ struct PoseEstimate {
   double corner_sigma = 0.0;
   // JointPoseResult::information; 0 without landmarks.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  // The same without a motion prior. A sum of squares over quarters of the image, and its mean if
+  // the errors of landmarks are independent. Of a prior: L and Q of DriftModel, axes of this
+  // camera.
+  Eigen::Matrix<double, 6, 6> seen_information = Eigen::Matrix<double, 6, 6>::Zero();
+  double squares = 0.0;
+  double expected_squares = 0.0;
+  Eigen::Matrix<double, 6, 6> last_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> motion_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
   // place.
   KeyframeId keyframe_of_place;

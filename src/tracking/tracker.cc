@@ -242,6 +242,8 @@ bool Tracker::FuseAhead(const MotionPrior& ahead, const Frame& frame, const Map&
     return false;
   }
   PoseEstimate& estimate = found->tracking.estimate;
+  estimate.last_covariance = InAxesOf(ahead.cam_from_last_cam, last_.shared_covariance);
+  estimate.motion_covariance = ahead.covariance;
   const bool is_fused = FusePrior(
       ahead.cam_from_last_cam * last_.cam_from_world,
       InAxesOf(ahead.cam_from_last_cam, last_.measured_covariance) + ahead.covariance, estimate);
@@ -299,8 +301,8 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
   }
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
-
-  const Eigen::Matrix<double, 6, 6> covariance = drift_.Covariance(map, estimate);
+  const Eigen::Matrix<double, 6, 6> measured = drift_.Measured(estimate);
+  const Eigen::Matrix<double, 6, 6> covariance = measured + drift_.Drift(map, estimate);
 
   Result result;
   if (!is_localizing_only_ && (NeedsKeyframe(*frame, map, tracking, mapper) || found.is_wide)) {
@@ -332,6 +334,7 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
            .velocity = found.corrected.velocity,
            .map_per_odometry = last_.map_per_odometry,
            .measured_covariance = estimate.information.inverse(),
+           .shared_covariance = measured,
            .covariance = covariance,
            .median_depth = estimate.median_depth};
   return result;

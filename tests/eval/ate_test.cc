@@ -272,8 +272,33 @@ TEST(Nees, IsTheSquaredErrorInStandardDeviations) {
   const NeesResult nees = EvaluateNees(reference, estimate, covariances);
   EXPECT_EQ(nees.poses, estimate.size());
   EXPECT_NEAR(nees.ratio.mean, 1.0 / 6.0, 0.01);
+  // A third of the errors of each part is on an axis of that part, and half of all poses have one.
+  EXPECT_NEAR(nees.rotation.mean, 1.0 / 6.0, 0.01);
+  EXPECT_NEAR(nees.translation.mean, 1.0 / 6.0, 0.01);
   covariances[0].setZero();
   EXPECT_EQ(EvaluateNees(reference, estimate, covariances).poses, estimate.size() - 1);
+}
+
+// The same errors are in the true trajectory, and the estimate claims to be almost free of them.
+TEST(Nees, TakesTheErrorOfTheTruthIntoAccount) {
+  const Trajectory exact = Helix(120);
+  const TruthSigma sigma = {.translation = 0.01, .rotation = 0.005};
+  Trajectory reference;
+  for (size_t i = 0; i < exact.size(); ++i) {
+    Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();
+    const auto axis = static_cast<Eigen::Index>(i / 2 % 6);
+    error[axis] = (i % 2 == 0 ? 1.0 : -1.0) * (axis < 3 ? sigma.rotation : sigma.translation);
+    reference.push_back(
+        {exact[i].timestamp, Inverse(Retract(Inverse(exact[i].world_from_cam), error))});
+  }
+  const std::vector<Eigen::Matrix<double, 6, 6>> covariances(
+      exact.size(), 1e-10 * Eigen::Matrix<double, 6, 6>::Identity());
+  EXPECT_GT(EvaluateNees(reference, exact, covariances).ratio.mean, 1e4);
+  const NeesResult nees = EvaluateNees(reference, exact, covariances, sigma);
+  EXPECT_NEAR(nees.ratio.mean, 1.0 / 6.0, 0.01);
+  EXPECT_NEAR(nees.rotation.mean, 1.0 / 6.0, 0.01);
+  EXPECT_NEAR(nees.translation.mean, 1.0 / 6.0, 0.01);
+  EXPECT_THROW(EvaluateNees(reference, exact, covariances, {.translation = -1.0}), std::exception);
 }
 
 }  // namespace

@@ -65,15 +65,26 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
 // d' C^-1 d, where d is the error of the pose by the six parameters of Retract and C its
 // covariance. Its mean is 6 if the covariances are right, and larger if they are too small.
 struct NeesResult {
-  size_t poses = 0;       // that have a true pose at their time and a covariance
-  ErrorStatistics ratio;  // of NEES / 6
+  size_t poses = 0;             // that have a true pose at their time and a covariance
+  ErrorStatistics ratio;        // of NEES / 6
+  ErrorStatistics rotation;     // of NEES / 3 of the rotation alone
+  ErrorStatistics translation;  // the same of the position of the camera
+};
+
+// The standard deviations of the errors of a true trajectory itself, such as those of a motion
+// capture system, on each axis of the camera. Not below 0.
+struct TruthSigma {
+  double translation = 0.0;  // m
+  double rotation = 0.0;     // rad
 };
 
 // `covariances`: one per pose of the estimate, of TrackedFrame::covariance; those that cannot be
 // inverted are left out. The estimate is aligned by the rigid motion of its world for which the sum
-// of NEES is least. The true poses are interpolated, and count as free of errors.
+// of NEES is least. The true poses are interpolated. The covariance of an error is that of the
+// estimate plus that of the true pose: C + diag(rotation^2 I, translation^2 I).
 NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
-                        std::span<const Eigen::Matrix<double, 6, 6>> covariances);
+                        std::span<const Eigen::Matrix<double, 6, 6>> covariances,
+                        const TruthSigma& truth_sigma = {});
 
 // Describes pairs that are fewer than the stamps allow: less than nine tenths of
 // AteResult::expected_pairs. Then the stamps of one side have a wrong rate, or the reference has

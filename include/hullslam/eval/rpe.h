@@ -53,9 +53,10 @@ struct TrajectoryErrors {
   std::optional<NeesResult> nees = std::nullopt;  // absent without covariances
 };
 
-// `covariances`: as in EvaluateNees, or empty.
+// `covariances` and `truth_sigma`: as in EvaluateNees, or empty.
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
                                     const AteOptions& options,
-                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances = {});
+                                    std::span<const Eigen::Matrix<double, 6, 6>> covariances = {},
+                                    const TruthSigma& truth_sigma = {});
 
 }  // namespace hullslam

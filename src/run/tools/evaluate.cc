@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -42,6 +44,7 @@ struct TrajectoryArguments {
   std::string groundtruth;
   std::string estimate;
   AteOptions ate;
+  std::array<double, 2> truth_sigma = {0.0, 0.0};  // m, degrees
   bool json = false;
 };
 
@@ -92,6 +95,10 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
       "--max-diff", arguments.ate.max_difference,
       "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)");
   ExpectNumber(*max_difference, 1e-9, kMostSeconds);
+  auto* const truth_sigma = command->add_option(
+      "--truth-sigma", arguments.truth_sigma,
+      "M,DEG: standard deviations of the true trajectory's own errors, for NEES (default: 0,0)");
+  ExpectNumber(*truth_sigma->delimiter(','), 0.0, 180.0);
   command->add_flag("--json", arguments.json, "print the report as JSON");
   return command;
 }
@@ -100,8 +107,9 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
 // no two poses of the trajectories can be paired.
 void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
   const auto [reference, estimate] = ReadBoth(arguments);
-  const TrajectoryErrors errors =
-      EvaluateTrajectory(reference.poses, estimate.poses, arguments.ate, estimate.covariances);
+  const TrajectoryErrors errors = EvaluateTrajectory(
+      reference.poses, estimate.poses, arguments.ate, estimate.covariances,
+      {arguments.truth_sigma[0], arguments.truth_sigma[1] * std::numbers::pi / 180.0});
   if (!errors.ate.ok()) {
     throw InputError(arguments.estimate + ": " + errors.ate.failure);
   }
