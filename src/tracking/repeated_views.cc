@@ -90,7 +90,8 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
   return static_cast<double>(found) >= kLeastFound * static_cast<double>(landmarks);
 }
 
-constexpr double kMatureTime = 60.0;    // s
+constexpr double kMatureTime = 60.0;  // s
+constexpr int kMatureViews = 3;
 constexpr double kSimilarAngle = 0.26;  // rad, between two directions to a point: 15 degrees
 constexpr double kSimilarZoom = 0.35;   // logarithm of the ratio of distances
 // A keyframe is redundant if this share of its landmarks is seen by so many others (CullKeyframes).
@@ -214,6 +215,19 @@ bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
     const Frame& other = *map.keyframes().At(id).frame;
     return other.id >= first_of_session && frame.timestamp - other.timestamp > kMatureTime;
   };
+  const View view = ViewOf(map, estimate);
+  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
+  const auto is_similar = [&](KeyframeId id) {
+    const Rigid3& cam_from_world = map.keyframes().At(id).cam_from_world;
+    return is_old(id) && ShowsSimilarly(sensor, view, cam_from_world * world_from_cam);
+  };
+  int similar = is_similar(tracking.reference) ? 1 : 0;
+  for (const Covisible& other : map.keyframes().At(tracking.reference).covisible) {
+    similar += similar < kMatureViews && is_similar(other.keyframe) ? 1 : 0;
+  }
+  if (similar == 0 || similar >= kMatureViews) {
+    return similar > 0;
+  }
   int found = 0;
   int redundant = 0;
   for (const LandmarkId id : estimate.landmarks) {
@@ -225,18 +239,7 @@ bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
       redundant += observers >= kOtherObservers ? 1 : 0;
     }
   }
-  if (redundant < kRedundantShare * found) {
-    return false;
-  }
-  const View view = ViewOf(map, estimate);
-  const Rigid3 world_from_cam = Inverse(estimate.cam_from_world);
-  const auto is_similar = [&](KeyframeId id) {
-    const Rigid3& cam_from_world = map.keyframes().At(id).cam_from_world;
-    return is_old(id) && ShowsSimilarly(sensor, view, cam_from_world * world_from_cam);
-  };
-  return is_similar(tracking.reference) ||
-         std::ranges::any_of(map.keyframes().At(tracking.reference).covisible, is_similar,
-                             &Covisible::keyframe);
+  return redundant >= kRedundantShare * found;
 }
 
 int LastingChanges::Follow(const Frame& frame, const Map& map, const TrackingContext& context,
@@ -296,6 +299,12 @@ bool LastingChanges::IsReason(const Change& change) {
   const Place* const place = FindPlace(change.position);
   return change.seen >= kLastingFrames && change.missed == 0 &&
          (place == nullptr || place->requests < kMostChangeRequests);
+}
+
+bool LastingChanges::IsBeingLearnt() {
+  return std::ranges::any_of(changes_, [&](const Change& change) {
+    return IsReason(change) && FindPlace(change.position) != nullptr;
+  });
 }
 
 void LastingChanges::NoteRequest() {

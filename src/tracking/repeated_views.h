@@ -46,13 +46,13 @@ class JoinRequests {
 bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, FrameId first_of_session,
                  KeyframeId reference, const PoseEstimate& estimate);
 
-// Whether the map is mature where the camera is, so that a keyframe would add nothing and would be
-// removed again as redundant (CullKeyframes): nine tenths of the landmarks that the frame finds are
-// each seen by at least four keyframes of this session that are more than a minute older, so none
-// are new, as at the end of a lap that is not yet tied to its beginning; one of these keyframes
-// shows most of them from a similar direction and distance; the frame finds at least half of the
-// landmarks that should be visible (a place that is mapped by day and by lamp shows one half at a
-// time); and all parts of the image show landmarks.
+// Whether the map is mature where the camera is, so that a keyframe would add nothing: three
+// keyframes of this session that are more than a minute older show most of what the frame finds,
+// from a similar direction and distance; or one of them does, and at least four such keyframes see
+// each of nine tenths of the landmarks, so that a new one would be redundant at once
+// (CullKeyframes). This does not hold at the end of a lap that is not yet tied to its beginning.
+// The frame must also find at least half of the landmarks that should be visible (a place that is
+// mapped by day and by lamp shows one half at a time), and all parts of the image show landmarks.
 bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
                   FrameId first_of_session, const LocalTracking& tracking);
 
@@ -68,6 +68,9 @@ class LastingChanges {
              const LocalTracking& tracking);
   // A keyframe is made of the last frame because of them.
   void NoteRequest();
+  // Whether one of them has made a keyframe before and is still a reason. The landmarks of that
+  // keyframe are new, so the map is not mature there any more, but the change needs another one.
+  bool IsBeingLearnt();
 
  private:
   struct Change {

@@ -416,7 +416,8 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   }
   evidence.is_known_view =
       IsKnownView(map, sensor_, frame, first_frame_, tracking.reference, tracking.estimate);
-  evidence.is_well_mapped = IsWellMapped(map, sensor_, frame, first_frame_, tracking);
+  evidence.is_well_mapped =
+      lasting_changes_.IsBeingLearnt() || IsWellMapped(map, sensor_, frame, first_frame_, tracking);
   if (evidence.is_well_mapped && options_.keyframes_for_objects) {
     evidence.unknown_objects = lasting_changes;
     evidence.fruitless_requests = 0;
