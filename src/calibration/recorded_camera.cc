@@ -283,12 +283,14 @@ SeenView SeenViewOf(const Frame& frame, std::span<const LandmarkId> landmarks, c
     }
     const double depth = frame.shutter != nullptr ? frame.shutter->depths[i] : features.depth[i];
     const Eigen::Vector2d pixel = PixelOf(sensor, frame, i);
-    const std::optional<Eigen::Vector2d> slope = DisparitySlope(sensor.camera, frame.depth, pixel);
+    const Eigen::Vector2d raw = sensor.camera.Distort(pixel);
+    const std::optional<Eigen::Vector2d> slope =
+        DisparitySlope(sensor.camera, frame.depth, pixel, raw);
     const auto level = static_cast<size_t>(features.keypoints[i].level);
     seen.landmarks.emplace_back(
         landmarks[i],
         CalibrationObservation{.view = 0,
-                               .raw = sensor.camera.Distort(pixel),
+                               .raw = raw,
                                .sigma = sensor.depth_error.pixel_sigma *
                                         static_cast<double>(sensor.levels.scale[level]),
                                .disparity = depth > 0.0 && (slope || sensor.IsStereo())

@@ -71,9 +71,10 @@ Sight LookAt(const Sensor& sensor, const DepthGrid& grid, const Eigen::Vector2d&
 
 // The disparity of a plane is linear in the image.
 std::optional<Eigen::Vector2d> DisparitySlope(const PinholeCamera& camera, const DepthGrid& grid,
-                                              const Eigen::Vector2d& pixel) {
+                                              const Eigen::Vector2d& pixel,
+                                              const Eigen::Vector2d& raw_pixel) {
   constexpr double kOtherSurface = 0.3;  // px from the plane
-  const Eigen::Vector2d at = (camera.Distort(pixel) - DepthGrid::RawPixel(0, 0)) / DepthGrid::kStep;
+  const Eigen::Vector2d at = (raw_pixel - DepthGrid::RawPixel(0, 0)) / DepthGrid::kStep;
   const int column = static_cast<int>(std::floor(at.x())) - 1;
   const int row = static_cast<int>(std::floor(at.y())) - 1;
   if (column < 0 || row < 0 || column + 3 >= grid.columns() || row + 3 >= grid.rows()) {

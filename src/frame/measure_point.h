@@ -38,9 +38,10 @@ Sight LookAt(const Sensor& sensor, const DepthGrid& grid, const Eigen::Vector2d&
              const Eigen::Vector3d& point_in_cam, double tolerance = 1.0);
 
 // How the disparity (bf / z) of a depth image changes around an undistorted pixel, px per
-// undistorted pixel to the right and down, from the four samples of the grid around it. Null if one
-// of them is unknown, or if they are not on one plane.
+// undistorted pixel to the right and down, from the samples of the grid around its raw pixel. Null
+// if one of them is unknown, or if they are not on one plane.
 std::optional<Eigen::Vector2d> DisparitySlope(const PinholeCamera& camera, const DepthGrid& grid,
-                                              const Eigen::Vector2d& pixel);
+                                              const Eigen::Vector2d& pixel,
+                                              const Eigen::Vector2d& raw_pixel);
 
 }  // namespace hullslam

@@ -40,11 +40,25 @@ class UndoMotion {
         readout_time_(sensor.readout_time),
         velocity_(velocity) {}
 
+  // When the row of a pixel was exposed, s after the middle one, and the rotation Exp(-t w).
+  struct Exposure {
+    double time;
+    Eigen::Quaterniond undo;
+  };
+  Exposure ExposureOf(const Eigen::Vector2d& raw_pixel) const {
+    const double time = (raw_pixel[axis_.index] / axis_.size - 0.5) * readout_time_;
+    return {time, ExpSo3(-time * velocity_.angular)};
+  }
+
   Eigen::Vector2d Move(const Eigen::Vector2d& pixel, double inverse_depth) const {
-    const double time = TimeOf(pixel);
+    return Move(pixel, ExposureOf(camera_.Distort(pixel)), inverse_depth);
+  }
+
+  Eigen::Vector2d Move(const Eigen::Vector2d& pixel, const Exposure& exposure,
+                       double inverse_depth) const {
     const Eigen::Vector3d ray =
-        camera_.Unproject(pixel, 1.0) - time * inverse_depth * velocity_.linear;
-    const Eigen::Vector3d moved = ExpSo3(-time * velocity_.angular) * ray;
+        camera_.Unproject(pixel, 1.0) - exposure.time * inverse_depth * velocity_.linear;
+    const Eigen::Vector3d moved = exposure.undo * ray;
     // A point that the middle row could not see: its depth or the velocity is wrong.
     return moved.z() > kLeastDepth ? camera_.Project(moved) : pixel;
   }
@@ -53,18 +67,19 @@ class UndoMotion {
   // after the row of its pixel was exposed, and the disparity of its surface changes by `slope` per
   // undistorted pixel. The pixel of the depth image then shows a neighbour of the point on the
   // surface, since the point has moved on.
-  double DepthAt(const Eigen::Vector2d& pixel, double depth, double delay,
-                 const Eigen::Vector2d& slope) const {
+  double DepthAt(const Eigen::Vector2d& pixel, const Exposure& exposure, double depth,
+                 double delay, const Eigen::Vector2d& slope) const {
     constexpr int kSteps = 2;  // the second one changes less than 0.1 mm
-    const double row_time = TimeOf(pixel);
+    const double row_time = exposure.time;
     const double time = row_time + delay;
+    const Eigen::Quaterniond until_measured = ExpSo3(time * velocity_.angular);
     const Eigen::Vector3d ray = camera_.Unproject(pixel, 1.0);
     double inverse = 1.0 / depth;
     Eigen::Vector3d point = ray * depth;
     for (int i = 0; i < kSteps; ++i) {
-      point = ExpSo3(-row_time * velocity_.angular) * (ray / inverse - row_time * velocity_.linear);
+      point = exposure.undo * (ray / inverse - row_time * velocity_.linear);
       const Eigen::Vector3d when_measured =
-          ExpSo3(time * velocity_.angular) * point + time * velocity_.linear;
+          until_measured * point + time * velocity_.linear;
       if (when_measured.z() < kLeastDepth * depth || point.z() < kLeastDepth * depth) {
         return depth;
       }
@@ -72,7 +87,7 @@ class UndoMotion {
           1.0 / when_measured.z() + slope.dot(pixel - camera_.Project(when_measured)) / camera_.bf;
       inverse = std::max(inverse + 1.0 / depth - expected, kLeastDepth / depth);
     }
-    point = ExpSo3(-row_time * velocity_.angular) * (ray / inverse - row_time * velocity_.linear);
+    point = exposure.undo * (ray / inverse - row_time * velocity_.linear);
     return point.z();
   }
 
@@ -90,10 +105,6 @@ class UndoMotion {
 
  private:
   static constexpr double kLeastDepth = 0.05;  // of that in the image as read
-
-  double TimeOf(const Eigen::Vector2d& pixel) const {
-    return (camera_.Distort(pixel)[axis_.index] / axis_.size - 0.5) * readout_time_;
-  }
 
   const PinholeCamera& camera_;
   const ReadoutAxis axis_;
@@ -203,12 +214,16 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
   for (size_t i = 0; i < features.size(); ++i) {
     Eigen::Vector2f& pixel = features.keypoints[i].undistorted;
     const Eigen::Vector2d as_read = pixel.cast<double>();
+    const Eigen::Vector2d raw = camera.Distort(as_read);
+    const UndoMotion::Exposure exposure = undo.ExposureOf(raw);
     if (float& depth = features.depth[i]; depth > 0.0F) {
       const Eigen::Vector2d slope =
-          has_delay ? DisparitySlope(camera, frame.depth, as_read).value_or(no_slope) : no_slope;
-      depth = static_cast<float>(undo.DepthAt(as_read, static_cast<double>(depth), delay, slope));
+          has_delay ? DisparitySlope(camera, frame.depth, as_read, raw).value_or(no_slope)
+                    : no_slope;
+      depth = static_cast<float>(
+          undo.DepthAt(as_read, exposure, static_cast<double>(depth), delay, slope));
     }
-    pixel = undo.Move(as_read, inverse_depths[i]).cast<float>();
+    pixel = undo.Move(as_read, exposure, inverse_depths[i]).cast<float>();
   }
   features.grid = MakeKeypointGrid(features.keypoints, camera);
   auto motion = std::make_shared<ShutterMotion>();

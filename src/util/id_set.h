@@ -77,15 +77,24 @@ class IdMap {
 };
 
 // A set of ids of one map. At most one id of the set may have a given slot. The set has one bit per
-// slot, but only for those groups of 64 slots that contain a member. So adding an id is cheap, and
-// its cost does not depend on the number of ids in the map.
+// slot for those groups of 64 slots that contain a member, and four bytes for every group up to its
+// largest member. So a set that is needed for a moment is cheap, also in a large map.
 template <typename IdType>
 class IdSet {
  public:
-  // Returns whether the id is new in the set. Throws CheckError if the set has another id with this
-  // slot.
+  // Returns whether the id is new in the set. Throws CheckError if the id is not valid, or if the
+  // set has another id with this slot.
   bool Insert(IdType id) {
-    Group& group = groups_[GroupOf(id)];
+    Check(id.IsValid(), "an id that is not valid cannot be in a set");
+    const uint32_t number = id.slot() / kGroupSize;
+    if (number >= places_.size()) {
+      places_.resize(number + 1, kNoGroup);
+    }
+    if (places_[number] == kNoGroup) {
+      places_[number] = static_cast<uint32_t>(groups_.size());
+      groups_.emplace_back();
+    }
+    Group& group = groups_[places_[number]];
     const uint64_t bit = BitOf(id);
     if ((group.bits & bit) != 0) {
       Check(group.IdAt(id.slot()) == id, "two ids with the same slot are from different maps");
@@ -98,23 +107,25 @@ class IdSet {
   }
 
   bool Contains(IdType id) const {
-    const Group* group = groups_.Find(GroupOf(id));
-    return group != nullptr && (group->bits & BitOf(id)) != 0 && group->IdAt(id.slot()) == id;
+    const uint32_t number = id.slot() / kGroupSize;
+    if (number >= places_.size() || places_[number] == kNoGroup) {
+      return false;
+    }
+    const Group& group = groups_[places_[number]];
+    return (group.bits & BitOf(id)) != 0 && group.IdAt(id.slot()) == id;
   }
 
   size_t size() const { return size_; }
 
   // All members by increasing id.
   std::vector<IdType> Sorted() const {
-    std::vector<uint32_t> numbers;
-    for (const auto& [number, group] : groups_.entries()) {
-      numbers.push_back(number.value);
-    }
-    std::sort(numbers.begin(), numbers.end());
     std::vector<IdType> ids;
     ids.reserve(size_);
-    for (const uint32_t number : numbers) {
-      const Group& group = *groups_.Find(GroupId(number));
+    for (uint32_t number = 0; number < places_.size(); ++number) {
+      if (places_[number] == kNoGroup) {
+        continue;
+      }
+      const Group& group = groups_[places_[number]];
       for (uint64_t left = group.bits; left != 0; left &= left - 1) {
         const auto bit = static_cast<uint32_t>(std::countr_zero(left));
         ids.push_back(group.IdAt(number * kGroupSize + bit));
@@ -125,7 +136,7 @@ class IdSet {
 
  private:
   static constexpr uint32_t kGroupSize = 64;
-  using GroupId = Id<struct IdGroupTag>;
+  static constexpr uint32_t kNoGroup = UINT32_MAX;
 
   struct WithoutGenerations {
     uint64_t bits = 0;
@@ -142,10 +153,10 @@ class IdSet {
   };
   using Group = std::conditional_t<IdType::kHasGeneration, WithGenerations, WithoutGenerations>;
 
-  static GroupId GroupOf(IdType id) { return GroupId(id.slot() / kGroupSize); }
   static uint64_t BitOf(IdType id) { return uint64_t{1} << (id.slot() % kGroupSize); }
 
-  IdMap<GroupId, Group> groups_;
+  std::vector<uint32_t> places_;  // of the groups in groups_
+  std::vector<Group> groups_;
   size_t size_ = 0;
 };
 

@@ -97,13 +97,13 @@ TEST(DisparitySlope, IsThatOfTheSurface) {
     depth.col(x).setTo(50.0 / (25.0 + 0.02 * (x - camera.cx)));
   }
   const auto slope_at = [&](double x, double y) {
-    return DisparitySlope(camera, DepthGrid(depth, 1.0), {x, y});
+    return DisparitySlope(camera, DepthGrid(depth, 1.0), {x, y}, {x, y});
   };
   ASSERT_TRUE(slope_at(300.0, 200.0));
   EXPECT_NEAR(slope_at(300.0, 200.0)->x(), 0.02, 1e-3);  // depths are stored in millimetres
   EXPECT_NEAR(slope_at(300.0, 200.0)->y(), 0.0, 1e-3);
   EXPECT_FALSE(slope_at(700.0, 200.0)) << "outside";
-  EXPECT_FALSE(DisparitySlope(camera, {}, {300.0, 200.0}));
+  EXPECT_FALSE(DisparitySlope(camera, {}, {300.0, 200.0}, {300.0, 200.0}));
   depth.at<float>(204, 300) = 0.0F;
   EXPECT_FALSE(slope_at(301.0, 203.0)) << "a sample is unknown";
   depth.at<float>(204, 300) = 1.9F;
