@@ -2,9 +2,8 @@
 #include "map/keyframe_graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
-
-#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -178,15 +177,23 @@ std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count) {
 }
 
 std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes) {
-  IdSet<LandmarkId> observed;
+  // One bit per slot. Every frame asks for some ten thousand keypoints, so those without a landmark
+  // are not left out by a branch: they set a bit of the last word, which is not read.
+  const uint32_t words = map.landmarks().used_slots() / 64 + 1;
+  std::vector<uint64_t> is_observed(words + 1);
   for (const KeyframeId id : keyframes) {
     for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
-      if (landmark.IsValid()) {
-        observed.Insert(landmark);
-      }
+      is_observed[std::min(landmark.slot() / 64, words)] |= uint64_t{1} << (landmark.slot() % 64);
     }
   }
-  return observed.Sorted();
+  std::vector<LandmarkId> observed;
+  for (uint32_t word = 0; word < words; ++word) {
+    for (uint64_t left = is_observed[word]; left != 0; left &= left - 1) {
+      const auto bit = static_cast<uint32_t>(std::countr_zero(left));
+      observed.push_back(map.landmarks().IdInSlot(64 * word + bit));
+    }
+  }
+  return observed;
 }
 
 }  // namespace hullslam

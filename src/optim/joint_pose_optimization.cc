@@ -99,9 +99,14 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
                                       round < options.points.robust_rounds);
     const JointProblem problem(points, terms, cam_from_world, distance, options.objects);
     pose = internal::Minimize(problem, pose, options.points);
-    internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result.points);
+    const bool has_changed = internal::ChooseInliers(
+        camera, observations, internal::InlierRule::kBelowBound, result.points);
+    const std::vector<uint8_t> used = result.object_used;
     terms.Choose(pose);
     terms.Write(result);
+    if (!has_changed && result.object_used == used) {
+      break;  // as in OptimizePose
+    }
   }
   if (!IsConstrained(result, options)) {
     pose = cam_from_world;

@@ -18,7 +18,9 @@ PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& c
     const internal::PointTerms problem(camera, observations, result.is_inlier,
                                        round < options.robust_rounds);
     result.cam_from_world = internal::Minimize(problem, result.cam_from_world, options);
-    internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result);
+    if (!internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result)) {
+      break;  // below the bound Huber's loss is the squared error: more rounds change nothing
+    }
   }
   if (result.inlier_count < 3) {
     result.cam_from_world = cam_from_world;

@@ -44,17 +44,22 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
     if (is_inlier_[i] == 0 || point_in_cam.z() < kMinDepth) {
       continue;
     }
-    const PointMeasurement& measurement = observation.measurement;
-    const Eigen::Vector3d residual = PointResidual(camera_, measurement, point_in_cam);
-    const Eigen::Matrix3d by_point = PointResidualJacobian(camera_, measurement, point_in_cam);
-    const double weight =
-        robust_ ? HuberWeight(residual.squaredNorm(), OutlierBound(measurement)) : 1.0;
-    Eigen::Matrix3d point_hessian;
-    point_hessian.noalias() = by_point.transpose() * (weight * by_point);
-    Eigen::Vector3d point_gradient;
-    point_gradient.noalias() = by_point.transpose() * (weight * residual);
-    const Eigen::Matrix3d skew_hessian = -point_hessian.colwise().cross(point_in_cam);
-    by_rotation -= skew_hessian.rowwise().cross(point_in_cam.transpose());
+    const PointLinearization linear(camera_, observation.measurement, point_in_cam);
+    const double weight = robust_ ? HuberWeight(linear.residual.squaredNorm(),
+                                                OutlierBound(observation.measurement))
+                                  : 1.0;
+    const Eigen::Matrix3d point_hessian = weight * linear.Hessian();
+    const Eigen::Vector3d point_gradient = weight * linear.Gradient();
+    const double x = point_in_cam.x();
+    const double y = point_in_cam.y();
+    const double z = point_in_cam.z();
+    Eigen::Matrix3d skew_hessian;
+    skew_hessian.row(0) = y * point_hessian.row(2) - z * point_hessian.row(1);
+    skew_hessian.row(1) = z * point_hessian.row(0) - x * point_hessian.row(2);
+    skew_hessian.row(2) = x * point_hessian.row(1) - y * point_hessian.row(0);
+    by_rotation.col(0) -= z * skew_hessian.col(1) - y * skew_hessian.col(2);
+    by_rotation.col(1) -= x * skew_hessian.col(2) - z * skew_hessian.col(0);
+    by_rotation.col(2) -= y * skew_hessian.col(0) - x * skew_hessian.col(1);
     mixed += skew_hessian;
     by_translation += point_hessian;
     gradient.head<3>() += point_in_cam.cross(point_gradient);
@@ -63,17 +68,20 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
   hessian << by_rotation, mixed, mixed.transpose(), by_translation;
 }
 
-void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
+bool ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result) {
   const MatrixPose cam_from_world(result.cam_from_world);
   result.inlier_count = 0;
+  bool has_changed = false;
   for (size_t i = 0; i < observations.size(); ++i) {
     const double bound = rule == InlierRule::kBelowBound ? OutlierBound(observations[i].measurement)
                                                          : std::numeric_limits<double>::max();
     const bool is_inlier = Chi2(camera, observations[i], cam_from_world) <= bound;
+    has_changed |= is_inlier != (result.is_inlier[i] != 0);
     result.is_inlier[i] = is_inlier ? 1 : 0;
     result.inlier_count += is_inlier ? 1 : 0;
   }
+  return has_changed;
 }
 
 }  // namespace hullslam::internal

@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -42,9 +41,9 @@ class PointTerms {
 };
 
 // Decides which observations are inliers at the result's pose: those with an error of at most their
-// OutlierBound, or all that are in front of the camera.
+// OutlierBound, or all that are in front of the camera. Returns whether any of them changed.
 enum class InlierRule { kBelowBound, kInFront };
-void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
+bool ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);
 
 // A problem in the form that ceres::TinySolver needs: six residuals, which are the SquareRootForm
@@ -65,8 +64,10 @@ class TinyPoseFunction {
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   enum { NUM_RESIDUALS = kSize + 1, NUM_PARAMETERS = kSize };
 
-  TinyPoseFunction(const Problem& problem, const Pose& start) : problem_(problem), pose_(start) {}
+  TinyPoseFunction(const Problem& problem, const Pose& start)
+      : problem_(problem), pose_(start), cost_(problem.Cost(start)) {}
 
+  double start_cost() const { return cost_; }
   Pose PoseAt(const Vector& parameters) const { return Retract(pose_, parameters - steps_); }
 
   // `jacobian`: NUM_RESIDUALS x NUM_PARAMETERS, by columns; may be null.
@@ -104,9 +105,8 @@ class TinyPoseFunction {
   const Problem& problem_;
   mutable Pose pose_;  // pose of the last linearisation
   mutable Vector steps_ = Vector::Zero();
-  mutable double cost_ = 0.0;
-  // The parameters that cost_ belongs to. They start as NaN, which equals no parameters.
-  mutable Vector cost_steps_ = Vector::Constant(std::numeric_limits<double>::quiet_NaN());
+  mutable double cost_;
+  mutable Vector cost_steps_ = Vector::Zero();  // the parameters that cost_ belongs to
   mutable SquareRootForm<kSize> form_;
 };
 
@@ -118,7 +118,7 @@ Pose Minimize(const Problem& problem, const Pose& pose, const PoseOptimizationOp
   ceres::TinySolver<Function> solver;
   solver.options.max_num_iterations = options.iterations + 1;  // TinySolver counts from one
   // The tolerance is in units of the squared norm of the residuals, which is the cost.
-  solver.options.function_tolerance = options.min_relative_decrease * problem.Cost(pose);
+  solver.options.function_tolerance = options.min_relative_decrease * function.start_cost();
   typename Function::Vector steps = Function::Vector::Zero();
   solver.Solve(function, &steps);
   return function.PoseAt(steps);

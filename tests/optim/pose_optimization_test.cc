@@ -78,7 +78,7 @@ TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
           side * Eigen::Vector3d(random_.Number(20, 100), random_.Number(-100, 100), 0.0);
     }
     const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
-    EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+    EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-7);
     EXPECT_EQ(result.inlier_count, 70);
     for (size_t i = 0; i < observations.size(); ++i) {
       EXPECT_EQ(result.is_inlier[i], i % 3 == 0 && i < 90 ? 0 : 1) << i;
@@ -93,7 +93,7 @@ TEST_F(PoseOptimization, TheFirstRoundsAreRobust) {
     observations[3 * i].measurement.measured += Eigen::Vector3d(random_.Number(40, 60), 0.0, 0.0);
   }
   const Rigid3 start = Start();
-  EXPECT_LT(Distance(OptimizePose(kCamera, start, observations).cam_from_world, true_pose_), 1e-9);
+  EXPECT_LT(Distance(OptimizePose(kCamera, start, observations).cam_from_world, true_pose_), 1e-7);
   const PoseOptimizationResult plain =
       OptimizePose(kCamera, start, observations, {.robust_rounds = 0});
   EXPECT_GT(Distance(plain.cam_from_world, true_pose_), 1e-3);
@@ -199,7 +199,7 @@ TEST_F(PoseOptimization, APointBehindTheCameraDoesNotStopTheOthers) {
   // So far from the truth that no observation is an inlier at the start.
   const Rigid3 start = Rigid3(ExpSo3({0.03, -0.04, 0.02}), {0.05, 0.05, -0.05}) * true_pose_;
   const PoseOptimizationResult result = OptimizePose(kCamera, start, observations);
-  EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+  EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-7);
   EXPECT_EQ(result.inlier_count, 49);
   EXPECT_EQ(result.is_inlier[20], 0);
 }

@@ -98,6 +98,8 @@ class RecyclingTable {
   size_t slots() const { return cells_.size(); }
   // Number of slots that were ever used: slots() plus those whose generations are used up.
   uint32_t used_slots() const { return cells_.NextId().value; }
+  // The id of the value in a used slot, or of the next one that gets it.
+  IdType IdInSlot(uint32_t slot) const { return cells_.At(SlotId(slot)).id; }
   // The ids that the next values get in free slots, in this order.
   std::vector<IdType> FreeIds() const {
     std::vector<IdType> ids;
