@@ -108,12 +108,14 @@ class DepthOfImage : public DepthSource {
                    const std::array<cv::Mat, 2>& ignored, TaskRunner& runner) override {
     Features features;
     features.extracted = extractor.Extract(image.grey, runner, ignored[0]);
-    for (const RawKeypoint& keypoint : features.extracted.keypoints) {
+    const std::vector<RawKeypoint>& keypoints = features.extracted.keypoints;
+    features.depths.resize(keypoints.size());
+    runner.RunEach(keypoints.size(), [&](size_t i) {
       const auto scale =
-          static_cast<double>(sensor_.levels.scale[static_cast<size_t>(keypoint.level)]);
-      features.depths.push_back(
-          KeypointDepth(image.depth, keypoint, scale, sensor_.camera.bf, options_));
-    }
+          static_cast<double>(sensor_.levels.scale[static_cast<size_t>(keypoints[i].level)]);
+      features.depths[i] =
+          KeypointDepth(image.depth, keypoints[i], scale, sensor_.camera.bf, options_);
+    });
     return features;
   }
 

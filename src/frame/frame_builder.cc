@@ -39,17 +39,12 @@ cv::Rect RegionOf(std::span<const InstanceMask> masks, const cv::Size& size) {
 
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
                   TaskRunner& runner, FrameFeatures& features) {
-  constexpr size_t kInTask = 256;
-  const size_t count = keypoints.size();
-  features.keypoints.resize(count);
-  runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
-    for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
-      const RawKeypoint& keypoint = keypoints[i];
-      const Eigen::Vector2f undistorted =
-          camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
-      features.keypoints[i] = {
-          .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
-    }
+  features.keypoints.resize(keypoints.size());
+  runner.RunEach(keypoints.size(), [&](size_t i) {
+    const RawKeypoint& keypoint = keypoints[i];
+    const Eigen::Vector2f undistorted = camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
+    features.keypoints[i] = {
+        .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
   });
 }
 

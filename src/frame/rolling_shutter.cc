@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -38,16 +39,37 @@ class UndoMotion {
       : camera_(sensor.camera),
         axis_(AxisOf(sensor)),
         readout_time_(sensor.readout_time),
-        velocity_(velocity) {}
+        velocity_(velocity),
+        speed_(velocity.angular.norm()),
+        axis_of_turn_(speed_ > 0.0 ? Eigen::Vector3d(velocity.angular / speed_)
+                                   : Eigen::Vector3d::Zero()) {}
+
+  // The rotation Exp(t w) of a vector, by the formula of Rodrigues: all rotations have one axis.
+  class Turn {
+   public:
+    Turn(const UndoMotion& undo, double time)
+        : axis_(undo.axis_of_turn_),
+          sine_(std::sin(time * undo.speed_)),
+          versine_(1.0 - std::cos(time * undo.speed_)) {}
+    Eigen::Vector3d operator*(const Eigen::Vector3d& vector) const {
+      const Eigen::Vector3d across = axis_.cross(vector);
+      return vector + sine_ * across + versine_ * axis_.cross(across);
+    }
+
+   private:
+    const Eigen::Vector3d& axis_;
+    double sine_;
+    double versine_;
+  };
 
   // When the row of a pixel was exposed, s after the middle one, and the rotation Exp(-t w).
   struct Exposure {
     double time;
-    Eigen::Quaterniond undo;
+    Turn undo;
   };
   Exposure ExposureOf(const Eigen::Vector2d& raw_pixel) const {
     const double time = (raw_pixel[axis_.index] / axis_.size - 0.5) * readout_time_;
-    return {time, ExpSo3(-time * velocity_.angular)};
+    return {time, Turn(*this, -time)};
   }
 
   Eigen::Vector2d Move(const Eigen::Vector2d& pixel, double inverse_depth) const {
@@ -67,19 +89,18 @@ class UndoMotion {
   // after the row of its pixel was exposed, and the disparity of its surface changes by `slope` per
   // undistorted pixel. The pixel of the depth image then shows a neighbour of the point on the
   // surface, since the point has moved on.
-  double DepthAt(const Eigen::Vector2d& pixel, const Exposure& exposure, double depth,
-                 double delay, const Eigen::Vector2d& slope) const {
+  double DepthAt(const Eigen::Vector2d& pixel, const Exposure& exposure, double depth, double delay,
+                 const Eigen::Vector2d& slope) const {
     constexpr int kSteps = 2;  // the second one changes less than 0.1 mm
     const double row_time = exposure.time;
     const double time = row_time + delay;
-    const Eigen::Quaterniond until_measured = ExpSo3(time * velocity_.angular);
+    const Turn until_measured(*this, time);
     const Eigen::Vector3d ray = camera_.Unproject(pixel, 1.0);
     double inverse = 1.0 / depth;
     Eigen::Vector3d point = ray * depth;
     for (int i = 0; i < kSteps; ++i) {
       point = exposure.undo * (ray / inverse - row_time * velocity_.linear);
-      const Eigen::Vector3d when_measured =
-          until_measured * point + time * velocity_.linear;
+      const Eigen::Vector3d when_measured = until_measured * point + time * velocity_.linear;
       if (when_measured.z() < kLeastDepth * depth || point.z() < kLeastDepth * depth) {
         return depth;
       }
@@ -110,6 +131,8 @@ class UndoMotion {
   const ReadoutAxis axis_;
   const double readout_time_;
   const PointVelocity velocity_;
+  const double speed_;  // rad/s
+  const Eigen::Vector3d axis_of_turn_;
 };
 
 // The line after the motion of its points near `near`.
@@ -174,16 +197,15 @@ double MedianOfKnown(std::vector<double> inverse_depths) {
   return inverse_depths.empty() ? 0.0 : Median(std::move(inverse_depths));
 }
 
-// The inverse depth of a detection; `of_image`, that of the whole image, if none of its keypoints
-// has a known depth.
-double InverseDepthOf(const Detection& detection, std::span<const double> inverse_depths,
-                      double of_image) {
+// The inverse depth of a detection; that of the whole image if none of its keypoints has a known
+// depth.
+double InverseDepthOf(const Detection& detection, const std::vector<double>& inverse_depths) {
   std::vector<double> on_object;
   for (const uint32_t keypoint : detection.keypoints) {
     on_object.push_back(inverse_depths[keypoint]);
   }
   const double median = MedianOfKnown(std::move(on_object));
-  return median > 0.0 ? median : of_image;
+  return median > 0.0 ? median : MedianOfKnown(inverse_depths);
 }
 
 }  // namespace
@@ -252,10 +274,8 @@ Eigen::Vector2d BeforeCorrection(const Sensor& sensor, const ShutterMotion& moti
 
 void CorrectDetections(const Sensor& sensor, const ShutterMotion& motion,
                        std::vector<Detection>& detections) {
-  const double of_image = MedianOfKnown(motion.inverse_depths);
   for (Detection& detection : detections) {
-    Correct(sensor, motion.velocity, InverseDepthOf(detection, motion.inverse_depths, of_image),
-            detection);
+    Correct(sensor, motion.velocity, InverseDepthOf(detection, motion.inverse_depths), detection);
   }
 }
 

@@ -71,8 +71,8 @@ bool AreApart(const SeenObject& seen, const PredictedObject& predicted,
   if (seen.cloud.empty() || predicted.cloud.empty()) {
     return false;
   }
-  const double size = std::max(predicted.size, SizeOf(seen.cloud));
-  const double offset = (seen.centroid - MeanOf(predicted.cloud)).norm();
+  const double size = std::max(predicted.size, seen.size);
+  const double offset = (seen.centroid - predicted.centroid).norm();
   return offset > options.max_offset * size + seen.noise;
 }
 
@@ -91,15 +91,17 @@ double CombinedSimilarity(const SeenObject& seen, const PredictedObject& predict
   const double projected = IntersectionOverUnion(seen.detection->hull, predicted.ellipse);
   const double carried = CarriedOverlap(seen, predicted);
   const double shared = SharedLandmarks(seen, predicted, options);
+  const bool is_alike = projected >= options.min_projection_iou ||
+                        carried >= options.min_carried_iou || shared >= options.min_shared_ratio;
+  const bool may_be_alike = std::max(projected, carried) > options.min_depth_iou;
+  if (!is_alike && !may_be_alike) {
+    return 0.0;  // most pairs, so their clouds are not compared
+  }
   const bool one_cloud = MayBeOneCloud(seen.cloud, predicted.cloud, options.max_rank_sum,
                                        static_cast<size_t>(options.min_cloud));
   const bool one_centroid = !seen.cloud.empty() && MayBeTheMean(seen.centroid, predicted.centroids,
                                                                 options.alpha, seen.noise);
-  const bool is_match =
-      projected >= options.min_projection_iou || carried >= options.min_carried_iou ||
-      shared >= options.min_shared_ratio ||
-      ((one_cloud || one_centroid) && std::max(projected, carried) > options.min_depth_iou);
-  if (!is_match) {
+  if (!is_alike && !one_cloud && !one_centroid) {
     return 0.0;
   }
   const double clouds =
@@ -123,6 +125,7 @@ SeenObject Look(const AssociationInput& input, const Detection& detection,
   const ResolvedObservation observation{KeyframeId(), input.cam_from_world, &detection};
   seen.cloud = CollectPoints({&observation, 1}, static_cast<size_t>(options.cloud_points));
   seen.centroid = MeanOf(seen.cloud);
+  seen.size = SizeOf(seen.cloud);
   seen.noise = options.centroid_noise * (input.cam_from_world * seen.centroid).norm();
   for (const uint32_t keypoint : detection.keypoints) {
     if (keypoint < input.landmarks.size()) {
@@ -170,6 +173,7 @@ PredictedObject Locate(ObjectId id, const ObjectLandmark& object, const Resolved
   predicted.id = id;
   predicted.object = &object;
   predicted.cloud = CollectPoints({&last, 1}, static_cast<size_t>(options.cloud_points));
+  predicted.centroid = MeanOf(predicted.cloud);
   predicted.size = SizeOf(predicted.cloud);
   return predicted;
 }

@@ -23,6 +23,7 @@ struct SeenObject {
   std::vector<Eigen::Vector3d> cloud;                  // depth points, world
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
   double noise = 0.0;                                  // of the centroid, in units of the map
+  double size = 0.0;                                   // SizeOf() the cloud
 };
 
 // The expected appearance of an object in a frame.
@@ -35,7 +36,8 @@ struct PredictedObject {
   std::vector<LandmarkId> landmarks;                  // in its latest observations, sorted
   std::vector<Eigen::Vector3d> cloud;                 // depth points of its last observation, world
   std::vector<Eigen::Vector3d> centroids;  // one per latest observation with depth points, world
-  double size = 0.0;                       // SizeOf() the cloud
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
+  double size = 0.0;                                   // SizeOf() the cloud
 };
 
 // Twice the root mean square distance of the points from their mean. It is about half the diagonal

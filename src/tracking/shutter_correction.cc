@@ -90,8 +90,10 @@ bool IsPlausible(const Sensor& sensor, double duration, uint32_t frames) {
 // The median speed of the keypoints in the raw image, px/s, as the bounds of motion measure it.
 double ImageSpeed(const FrameFeatures& features, const Sensor& sensor,
                   const PointVelocity& velocity, std::span<const double> inverse_depths) {
+  constexpr size_t kEnough = 200;  // keypoints, for the median
+  const size_t step = std::max<size_t>(1, features.size() / kEnough);
   std::vector<double> speeds;
-  for (size_t i = 0; i < features.size(); ++i) {
+  for (size_t i = 0; i < features.size(); i += step) {
     const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
     const Eigen::Vector2d undistorted =
         ImageVelocity(sensor.camera, velocity, pixel, inverse_depths[i]);

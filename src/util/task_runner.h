@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -19,6 +20,17 @@ class TaskRunner {
   // this order, but several may run at the same time. If a task throws an exception, no further
   // task is begun, and the exception is rethrown.
   virtual void Run(size_t count, const std::function<void(size_t)>& task) = 0;
+
+  // Calls one(0) to one(count - 1), which are so short that a task consists of many of them.
+  template <typename One>
+  void RunEach(size_t count, const One& one) {
+    constexpr size_t kInTask = 128;
+    Run((count + kInTask - 1) / kInTask, [&](size_t task) {
+      for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
+        one(i);
+      }
+    });
+  }
 };
 
 // Runs the tasks one after the other, in the calling thread.

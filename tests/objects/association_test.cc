@@ -9,6 +9,7 @@
 #include <span>
 
 #include "geometry/polygon.h"
+#include "objects/constraint/point_statistics.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {
@@ -66,7 +67,9 @@ TEST_F(CombinedSimilarityTest, NothingThatAgreesIsNoMatch) {
 TEST_F(CombinedSimilarityTest, CloudsThatAreApartExcludeAPair) {
   seen_.cloud = {{0.0, 0.0, 1.0}, {0.1, 0.0, 1.0}};
   seen_.centroid = {0.05, 0.0, 1.0};
+  seen_.size = SizeOf(seen_.cloud);
   predicted_.cloud = seen_.cloud;
+  predicted_.centroid = seen_.centroid;
   predicted_.size = SizeOf(predicted_.cloud);
   EXPECT_DOUBLE_EQ(predicted_.size, 0.1);
   EXPECT_FALSE(AreApart(seen_, predicted_, options_));
@@ -74,6 +77,7 @@ TEST_F(CombinedSimilarityTest, CloudsThatAreApartExcludeAPair) {
   for (Eigen::Vector3d& point : predicted_.cloud) {
     point.z() += 1.01 * options_.max_offset * predicted_.size;
   }
+  predicted_.centroid = MeanOf(predicted_.cloud);
   EXPECT_TRUE(AreApart(seen_, predicted_, options_));
   EXPECT_EQ(Similarity(), 0.0);
   seen_.noise = 1.0;
