@@ -105,9 +105,9 @@ FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
   return selected;
 }
 
-void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
-                           float radius, int min_level, int max_level,
-                           std::vector<uint32_t>& found) const {
+template <typename Visitor>
+void FeatureGrid::ForEachRange(const Eigen::Vector2f& center, float radius,
+                               const Visitor& visit) const {
   if (order_.empty()) {
     return;
   }
@@ -116,18 +116,43 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
   const int last_row = Row(center.y() + radius);
   for (int column = Column(center.x() - radius); column <= last_column; ++column) {
     const uint16_t* const cell = cell_start_.data() + column * kRows;
-    for (size_t position = cell[first_row]; position < cell[last_row + 1]; ++position) {
-      const uint16_t index = order_[position];
-      const Keypoint& keypoint = keypoints[index];
-      if (keypoint.level < min_level || keypoint.level > max_level) {
-        continue;
-      }
-      const Eigen::Vector2f at = PositionOf(keypoints, index);
-      if (std::abs(at.x() - center.x()) < radius && std::abs(at.y() - center.y()) < radius) {
-        found.push_back(index);
-      }
-    }
+    visit(size_t{cell[first_row]}, size_t{cell[last_row + 1]});
   }
+}
+
+void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
+                           float radius, int min_level, int max_level,
+                           std::vector<uint32_t>& found) const {
+  const std::span<const uint32_t> near =
+      GridSearch(*this, keypoints).FindNear(center, radius, min_level, max_level);
+  found.insert(found.end(), near.begin(), near.end());
+}
+
+GridSearch::GridSearch(const FeatureGrid& grid, std::span<const Keypoint> keypoints)
+    : grid_(grid), found_(keypoints.size() + 1) {
+  places_.reserve(keypoints.size());
+  for (const uint16_t index : grid.order_) {
+    places_.push_back({grid.PositionOf(keypoints, index), keypoints[index].level, index});
+  }
+}
+
+// Most keypoints of a cell are not in the window, in no order that a branch could be predicted
+// from.
+std::span<const uint32_t> GridSearch::FindNear(const Eigen::Vector2f& center, float radius,
+                                               int min_level, int max_level) {
+  size_t count = 0;
+  grid_.ForEachRange(center, radius, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Place& place = places_[i];
+      const bool is_near =
+          static_cast<bool>((place.level >= min_level) & (place.level <= max_level) &
+                            (std::abs(place.position.x() - center.x()) < radius) &
+                            (std::abs(place.position.y() - center.y()) < radius));
+      found_[count] = place.keypoint;
+      count += is_near ? 1 : 0;
+    }
+  });
+  return {found_.data(), count};
 }
 
 FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uint32_t> kept) {

@@ -10,19 +10,13 @@ constexpr double kDistanceMargin = 1.2;  // at both ends of the range; one level
 }  // namespace
 
 std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
-                                                  const Rigid3& cam_from_world,
+                                                  const MatrixPose& cam_from_world,
                                                   const Landmark& landmark) {
   LandmarkProjection view;
   view.point_in_cam = cam_from_world * landmark.position;
   if (view.point_in_cam.z() <= 0.0) {
     return std::nullopt;
   }
-  view.pixel = sensor.camera.Project(view.point_in_cam);
-  const std::optional<Eigen::Vector2d> raw = sensor.RawPixel(view.pixel);
-  if (!raw) {
-    return std::nullopt;
-  }
-  view.raw_pixel = *raw;
   const double distance = view.point_in_cam.norm();
   if (distance * kDistanceMargin < landmark.min_distance ||
       distance > landmark.max_distance * kDistanceMargin) {
@@ -33,6 +27,12 @@ std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
   if (view.cos_view < kMinCosView) {
     return std::nullopt;
   }
+  view.pixel = sensor.camera.Project(view.point_in_cam);
+  const std::optional<Eigen::Vector2d> raw = sensor.RawPixel(view.pixel);
+  if (!raw) {
+    return std::nullopt;
+  }
+  view.raw_pixel = *raw;
   view.level = sensor.levels.PredictLevel(distance, landmark.max_distance);
   return view;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "geometry/matrix_pose.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/landmark.h"
@@ -23,7 +24,7 @@ struct LandmarkProjection {
 // it is much nearer or farther than it was observed, or the camera sees it from a direction more
 // than 60 degrees away from its viewing direction.
 std::optional<LandmarkProjection> ProjectLandmark(const Sensor& sensor,
-                                                  const Rigid3& cam_from_world,
+                                                  const MatrixPose& cam_from_world,
                                                   const Landmark& landmark);
 
 }  // namespace hullslam

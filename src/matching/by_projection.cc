@@ -24,7 +24,7 @@ bool IsDepthOff(const Projection& projection, float depth) {
 
 HULLSLAM_FUNCTION_CLONES
 Best FindBest(const FrameFeatures& features, const Projection& projection,
-              std::span<const uint8_t> taken, const std::vector<uint32_t>& candidates) {
+              std::span<const uint8_t> taken, std::span<const uint32_t> candidates) {
   Best best;
   for (const uint32_t i : candidates) {
     if ((!taken.empty() && taken[i] != 0) || IsDepthOff(projection, features.depth[i])) {
@@ -78,15 +78,16 @@ std::vector<Match> MatchByProjection(const FrameFeatures& features,
                                      const ProjectionSearch& search) {
   Check(taken.empty() || taken.size() == features.size(), "`taken` needs one entry per keypoint");
   std::vector<Match> matches;
-  std::vector<uint32_t> candidates;
+  GridSearch grid(features.grid, features.keypoints);
+  std::vector<uint32_t> allowed;
   for (uint32_t query = 0; query < projections.size(); ++query) {
     const Projection& projection = projections[query];
-    candidates.clear();
-    features.grid.FindNear(features.keypoints, projection.pixel, projection.radius,
-                           projection.min_level, projection.max_level, candidates);
+    std::span<const uint32_t> candidates = grid.FindNear(
+        projection.pixel, projection.radius, projection.min_level, projection.max_level);
     if (search.may_match) {
-      std::erase_if(candidates,
-                    [&](uint32_t keypoint) { return !search.may_match(query, keypoint); });
+      allowed.assign(candidates.begin(), candidates.end());
+      std::erase_if(allowed, [&](uint32_t keypoint) { return !search.may_match(query, keypoint); });
+      candidates = allowed;
     }
     const Best best = FindBest(features, projection, taken, candidates);
     if (best.distance <= search.max_distance && !IsAmbiguous(best, search.max_ratio)) {

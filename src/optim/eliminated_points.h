@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "geometry/matrix_pose.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 #include "optim/bundle_points.h"
-#include "optim/matrix_pose.h"
 #include "optim/robust.h"
 
 namespace hullslam::internal {

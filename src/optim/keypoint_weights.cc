@@ -24,16 +24,14 @@ constexpr size_t kMinErrors = 100;  // least number of errors for a reliable med
 std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels& levels) {
   const FrameFeatures& features = keyframe.frame->features;
   std::vector<double> weights(features.size(), 0.0);
-  std::vector<uint32_t> near;
+  GridSearch grid(features.grid, features.keypoints);
   for (size_t keypoint = 0; keypoint < weights.size(); ++keypoint) {
     if (!keyframe.landmarks[keypoint].IsValid()) {
       continue;
     }
-    near.clear();
-    features.grid.FindNear(
-        features.keypoints,
-        features.grid.PositionOf(features.keypoints, static_cast<uint32_t>(keypoint)), kRadius, 0,
-        std::numeric_limits<int>::max(), near);
+    const std::span<const uint32_t> near =
+        grid.FindNear(features.grid.PositionOf(features.keypoints, static_cast<uint32_t>(keypoint)),
+                      kRadius, 0, std::numeric_limits<int>::max());
     double most = 0.0;
     double sum = 0.0;
     for (const uint32_t i : near) {

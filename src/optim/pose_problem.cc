@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "optim/matrix_pose.h"
+#include "geometry/matrix_pose.h"
 #include "optim/robust.h"
 
 namespace hullslam::internal {
@@ -13,6 +13,17 @@ namespace {
 double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
             const MatrixPose& cam_from_world) {
   return PointChi2(camera, observation.measurement, cam_from_world * observation.point);
+}
+
+// [a]_x m
+inline Eigen::Matrix3d CrossEachColumn(const Eigen::Vector3d& a, const Eigen::Matrix3d& m) {
+  Eigen::Matrix3d product;
+  for (int i = 0; i < 3; ++i) {
+    product(0, i) = a.y() * m(2, i) - a.z() * m(1, i);
+    product(1, i) = a.z() * m(0, i) - a.x() * m(2, i);
+    product(2, i) = a.x() * m(1, i) - a.y() * m(0, i);
+  }
+  return product;
 }
 
 }  // namespace
@@ -45,21 +56,14 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
       continue;
     }
     const PointLinearization linear(camera_, observation.measurement, point_in_cam);
-    const double weight = robust_ ? HuberWeight(linear.residual.squaredNorm(),
-                                                OutlierBound(observation.measurement))
-                                  : 1.0;
+    const double weight =
+        robust_ ? HuberWeight(linear.residual.squaredNorm(), OutlierBound(observation.measurement))
+                : 1.0;
     const Eigen::Matrix3d point_hessian = weight * linear.Hessian();
     const Eigen::Vector3d point_gradient = weight * linear.Gradient();
-    const double x = point_in_cam.x();
-    const double y = point_in_cam.y();
-    const double z = point_in_cam.z();
-    Eigen::Matrix3d skew_hessian;
-    skew_hessian.row(0) = y * point_hessian.row(2) - z * point_hessian.row(1);
-    skew_hessian.row(1) = z * point_hessian.row(0) - x * point_hessian.row(2);
-    skew_hessian.row(2) = x * point_hessian.row(1) - y * point_hessian.row(0);
-    by_rotation.col(0) -= z * skew_hessian.col(1) - y * skew_hessian.col(2);
-    by_rotation.col(1) -= x * skew_hessian.col(2) - z * skew_hessian.col(0);
-    by_rotation.col(2) -= y * skew_hessian.col(0) - x * skew_hessian.col(1);
+    const Eigen::Matrix3d skew_hessian = CrossEachColumn(point_in_cam, point_hessian);
+    // [x]_x H [x]_x is symmetric, and [x]_x M^T is (M [x]_x^T)^T = -(M [x]_x)^T.
+    by_rotation += CrossEachColumn(point_in_cam, skew_hessian.transpose());
     mixed += skew_hessian;
     by_translation += point_hessian;
     gradient.head<3>() += point_in_cam.cross(point_gradient);

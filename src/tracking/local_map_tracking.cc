@@ -106,7 +106,7 @@ constexpr double kFrontalShare = 2.5 / 4.0;
 constexpr double kCosFrontal = 0.998;
 
 // The search window of a landmark. Null if the camera cannot recognise it (ProjectLandmark).
-std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
+std::optional<Projection> ExpectLandmark(const Sensor& sensor, const MatrixPose& cam_from_world,
                                          const Landmark& landmark) {
   const std::optional<LandmarkProjection> view = ProjectLandmark(sensor, cam_from_world, landmark);
   if (!view) {
@@ -182,7 +182,7 @@ class LandmarkSearch {
   const Frame& frame_;
   const Map& map_;
   const Sensor& sensor_;
-  const Rigid3 cam_from_world_;
+  const MatrixPose cam_from_world_;
   IdSet<LandmarkId> known_;
   std::vector<LandmarkId> visible_;
 };

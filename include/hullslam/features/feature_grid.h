@@ -42,6 +42,10 @@ class FeatureGrid {
   }
 
  private:
+  friend class GridSearch;
+  // Calls visit(begin, end) with ranges of order_: those of the cells that the window touches.
+  template <typename Visitor>
+  void ForEachRange(const Eigen::Vector2f& center, float radius, const Visitor& visit) const;
   void Sort(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_max);
   int Column(float x) const;
   int Row(float y) const;
@@ -55,6 +59,26 @@ class FeatureGrid {
   std::vector<uint16_t> cell_start_;        // kColumns kRows + 1, into order_; column-major
   std::vector<uint16_t> order_;             // keypoint indices, cell by cell
   std::vector<Eigen::Vector2f> positions_;  // empty: as in the keypoints
+};
+
+// For many calls of FindNear() in one image: keeps what it compares in the order of the cells.
+class GridSearch {
+ public:
+  // Both must outlive this object.
+  GridSearch(const FeatureGrid& grid, std::span<const Keypoint> keypoints);
+  // The same keypoints in the same order. They are valid until the next call.
+  std::span<const uint32_t> FindNear(const Eigen::Vector2f& center, float radius, int min_level,
+                                     int max_level);
+
+ private:
+  struct Place {
+    Eigen::Vector2f position;
+    int level;
+    uint32_t keypoint;
+  };
+  const FeatureGrid& grid_;
+  std::vector<Place> places_;
+  std::vector<uint32_t> found_;  // one more than there are keypoints
 };
 
 // Everything that matching needs to know about one image. The vectors have one entry per keypoint.

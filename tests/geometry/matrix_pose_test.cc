@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/matrix_pose.h"
+#include "geometry/matrix_pose.h"
 
 #include <gtest/gtest.h>
 
 #include "support/random_geometry.h"
 
-namespace hullslam::internal {
+namespace hullslam {
 namespace {
 
 TEST(MatrixPose, MovesPointsAsThePoseDoes) {
@@ -18,4 +18,4 @@ TEST(MatrixPose, MovesPointsAsThePoseDoes) {
 }
 
 }  // namespace
-}  // namespace hullslam::internal
+}  // namespace hullslam

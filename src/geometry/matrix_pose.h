@@ -5,11 +5,11 @@
 
 #include "hullslam/geometry/rigid3.h"
 
-namespace hullslam::internal {
+namespace hullslam {
 
 // A pose whose rotation is a matrix. A matrix transforms many points faster than a quaternion does.
 struct MatrixPose {
-  explicit MatrixPose(const Rigid3& pose)
+  MatrixPose(const Rigid3& pose)
       : rotation(pose.rotation.toRotationMatrix()), translation(pose.translation) {}
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
@@ -20,4 +20,4 @@ struct MatrixPose {
   Eigen::Vector3d translation;
 };
 
-}  // namespace hullslam::internal
+}  // namespace hullslam
