@@ -123,8 +123,8 @@ void FeatureGrid::ForEachRange(const Eigen::Vector2f& center, float radius,
 void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
                            float radius, int min_level, int max_level,
                            std::vector<uint32_t>& found) const {
-  const std::span<const uint32_t> near =
-      GridSearch(*this, keypoints).FindNear(center, radius, min_level, max_level);
+  GridSearch search(*this, keypoints);
+  const std::span<const uint32_t> near = search.FindNear(center, radius, min_level, max_level);
   found.insert(found.end(), near.begin(), near.end());
 }
 
