@@ -21,9 +21,11 @@ struct P3pPoses {
 };
 
 // The camera poses from which three points (m, world frame) are seen along three rays (camera
-// frame, any length, not zero), by OpenCV's implementation of Ke and Roumeliotis ("An efficient
-// algebraic solution to the perspective-three-point problem", 2017). All points are in the direction
-// of their rays. There is no pose unless the points span a triangle.
+// frame, any length, not zero). The distances of the points from the camera are intersections of
+// quadrics; as by Persson and Nordberg ("Lambda Twist", 2018), one real root of a cubic polynomial
+// gives a degenerate quadric, which is a pair of planes, and two Gauss-Newton steps remove the
+// rounding errors. All points are in front of the camera, in the direction of their rays. There is
+// no pose unless the points span a triangle.
 P3pPoses SolveP3p(const std::array<Eigen::Vector3d, 3>& rays,
                   const std::array<Eigen::Vector3d, 3>& points);
 

@@ -75,12 +75,10 @@ TEST(P3p, AllPosesSeeThePointsAlongTheRays) {
 }
 
 // Seen from the tip of a pyramid over a triangle of equal sides, the four solutions are known: the
-// tip, and three in which one corner is nearer (Fischler and Bolles 1981, figure 5). One corner is
-// moved a little, because the solver divides by zero where two sides and two rays are exactly
-// alike.
+// tip, and three in which one corner is nearer (Fischler and Bolles 1981, figure 5).
 TEST(P3p, FindsTheFourPosesOfARegularPyramid) {
   const double root3 = std::sqrt(3.0);
-  const Points points = {Eigen::Vector3d(-root3, -1.0, 0.0), {root3, -1.0, 0.0}, {1e-4, 2.0, 0.0}};
+  const Points points = {Eigen::Vector3d(-root3, -1.0, 0.0), {root3, -1.0, 0.0}, {0.0, 2.0, 0.0}};
   // Distance 4 from all corners; the cosine between two rays is (16 + 16 - 12) / 32 = 5 / 8.
   const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {0.0, 0.0, std::sqrt(12.0)});
   const Points rays = {cam_from_world * points[0], cam_from_world * points[1],
@@ -92,11 +90,11 @@ TEST(P3p, FindsTheFourPosesOfARegularPyramid) {
     Eigen::Vector3d distances((pose * points[0]).norm(), (pose * points[1]).norm(),
                               (pose * points[2]).norm());
     std::sort(distances.begin(), distances.end());
-    EXPECT_NEAR(distances[1], 4.0, 1e-3);
-    EXPECT_NEAR(distances[2], 4.0, 1e-3);
+    EXPECT_NEAR(distances[1], 4.0, 1e-6);
+    EXPECT_NEAR(distances[2], 4.0, 1e-6);
     // d^2 + 16 - 2 * 5 / 8 * 4 d = 12 has the solutions 4 and 1.
     apex += distances[0] > 2.0 ? 1 : 0;
-    EXPECT_NEAR(distances[0], distances[0] > 2.0 ? 4.0 : 1.0, 1e-3);
+    EXPECT_NEAR(distances[0], distances[0] > 2.0 ? 4.0 : 1.0, 1e-6);
   }
   EXPECT_EQ(apex, 1);
 }
