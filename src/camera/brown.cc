@@ -32,15 +32,6 @@ std::array<double, 8> BrownCoefficients(const PinholeCamera& camera) {
   return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6};
 }
 
-Eigen::Vector2d DistortBrownPoint(const PinholeCamera& camera, const Eigen::Vector2d& point) {
-  const double x = point.x();
-  const double y = point.y();
-  const double r2 = x * x + y * y;
-  const double radial = RadialAt(camera, r2).factor;
-  return {x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x),
-          y * radial + camera.p1 * (r2 + 2.0 * y * y) + 2.0 * camera.p2 * x * y};
-}
-
 LensPoint DistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& point) {
   const double x = point.x();
   const double y = point.y();
@@ -49,7 +40,8 @@ LensPoint DistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& point
   const double p1 = camera.p1;
   const double p2 = camera.p2;
   LensPoint result;
-  result.point = DistortBrownPoint(camera, point);
+  result.point = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+                  y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
   result.jacobian(0, 0) = radial + 2.0 * x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x;
   result.jacobian(0, 1) = 2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y;
   result.jacobian(1, 0) = result.jacobian(0, 1);

@@ -10,8 +10,6 @@ namespace hullslam {
 
 // LensModel::kBrown at a point of the plane z = 1.
 LensPoint DistortBrown(const PinholeCamera& camera, const Eigen::Vector2d& point);
-// The same without the derivative.
-Eigen::Vector2d DistortBrownPoint(const PinholeCamera& camera, const Eigen::Vector2d& point);
 
 // The coefficients in OpenCV's order: k1, k2, p1, p2, k3 to k6. Zeros for another lens.
 std::array<double, 8> BrownCoefficients(const PinholeCamera& camera);

@@ -74,9 +74,7 @@ Eigen::Vector2d PinholeCamera::Distort(const Eigen::Vector2d& undistorted) const
   if (!IsDistorted()) {
     return undistorted;
   }
-  const Eigen::Vector2d point = Normalized(*this, undistorted);
-  const Eigen::Vector2d distorted =
-      IsFisheye() ? DistortWide(*this, point).point : DistortBrownPoint(*this, point);
+  const Eigen::Vector2d distorted = DistortNormalized(*this, Normalized(*this, undistorted)).point;
   return {fx * distorted.x() + cx, fy * distorted.y() + cy};
 }
 

@@ -105,29 +105,6 @@ FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
   return selected;
 }
 
-template <typename Visitor>
-void FeatureGrid::ForEachRange(const Eigen::Vector2f& center, float radius,
-                               const Visitor& visit) const {
-  if (order_.empty()) {
-    return;
-  }
-  const int last_column = Column(center.x() + radius);
-  const int first_row = Row(center.y() - radius);
-  const int last_row = Row(center.y() + radius);
-  for (int column = Column(center.x() - radius); column <= last_column; ++column) {
-    const uint16_t* const cell = cell_start_.data() + column * kRows;
-    visit(size_t{cell[first_row]}, size_t{cell[last_row + 1]});
-  }
-}
-
-void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
-                           float radius, int min_level, int max_level,
-                           std::vector<uint32_t>& found) const {
-  GridSearch search(*this, keypoints);
-  const std::span<const uint32_t> near = search.FindNear(center, radius, min_level, max_level);
-  found.insert(found.end(), near.begin(), near.end());
-}
-
 GridSearch::GridSearch(const FeatureGrid& grid, std::span<const Keypoint> keypoints)
     : grid_(grid), found_(keypoints.size() + 1) {
   places_.reserve(keypoints.size());
@@ -140,9 +117,16 @@ GridSearch::GridSearch(const FeatureGrid& grid, std::span<const Keypoint> keypoi
 // from.
 std::span<const uint32_t> GridSearch::FindNear(const Eigen::Vector2f& center, float radius,
                                                int min_level, int max_level) {
+  if (places_.empty()) {
+    return {};
+  }
   size_t count = 0;
-  grid_.ForEachRange(center, radius, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
+  const int last_column = grid_.Column(center.x() + radius);
+  const int first_row = grid_.Row(center.y() - radius);
+  const int last_row = grid_.Row(center.y() + radius);
+  for (int column = grid_.Column(center.x() - radius); column <= last_column; ++column) {
+    const uint16_t* const cell = grid_.cell_start_.data() + column * FeatureGrid::kRows;
+    for (size_t i = cell[first_row]; i < cell[last_row + 1]; ++i) {
       const Place& place = places_[i];
       const bool is_near =
           static_cast<bool>((place.level >= min_level) & (place.level <= max_level) &
@@ -151,7 +135,7 @@ std::span<const uint32_t> GridSearch::FindNear(const Eigen::Vector2f& center, fl
       found_[count] = place.keypoint;
       count += is_near ? 1 : 0;
     }
-  });
+  }
   return {found_.data(), count};
 }
 

@@ -44,43 +44,29 @@ class UndoMotion {
         axis_of_turn_(speed_ > 0.0 ? Eigen::Vector3d(velocity.angular / speed_)
                                    : Eigen::Vector3d::Zero()) {}
 
-  // The rotation Exp(t w) of a vector, by the formula of Rodrigues: all rotations have one axis.
-  class Turn {
-   public:
-    Turn(const UndoMotion& undo, double time)
-        : axis_(undo.axis_of_turn_),
-          sine_(std::sin(time * undo.speed_)),
-          versine_(1.0 - std::cos(time * undo.speed_)) {}
-    Eigen::Vector3d operator*(const Eigen::Vector3d& vector) const {
-      const Eigen::Vector3d across = axis_.cross(vector);
-      return vector + sine_ * across + versine_ * axis_.cross(across);
-    }
-
-   private:
-    const Eigen::Vector3d& axis_;
-    double sine_;
-    double versine_;
-  };
-
-  // When the row of a pixel was exposed, s after the middle one, and the rotation Exp(-t w).
-  struct Exposure {
+  // A moment t, s after the exposure of the middle row, and the rotation Exp(t w) until then by the
+  // formula of Rodrigues: all rotations have one axis.
+  struct Moment {
     double time;
-    Turn undo;
+    double sine;     // of the angle
+    double versine;  // 1 - cosine
   };
-  Exposure ExposureOf(const Eigen::Vector2d& raw_pixel) const {
-    const double time = (raw_pixel[axis_.index] / axis_.size - 0.5) * readout_time_;
-    return {time, Turn(*this, -time)};
+  Moment After(double time) const {
+    return {time, std::sin(time * speed_), 1.0 - std::cos(time * speed_)};
+  }
+  Moment ExposureOf(const Eigen::Vector2d& raw_pixel) const {
+    return After((raw_pixel[axis_.index] / axis_.size - 0.5) * readout_time_);
   }
 
   Eigen::Vector2d Move(const Eigen::Vector2d& pixel, double inverse_depth) const {
     return Move(pixel, ExposureOf(camera_.Distort(pixel)), inverse_depth);
   }
 
-  Eigen::Vector2d Move(const Eigen::Vector2d& pixel, const Exposure& exposure,
+  Eigen::Vector2d Move(const Eigen::Vector2d& pixel, const Moment& exposure,
                        double inverse_depth) const {
     const Eigen::Vector3d ray =
         camera_.Unproject(pixel, 1.0) - exposure.time * inverse_depth * velocity_.linear;
-    const Eigen::Vector3d moved = exposure.undo * ray;
+    const Eigen::Vector3d moved = Rotate(-exposure.sine, exposure.versine, ray);
     // A point that the middle row could not see: its depth or the velocity is wrong.
     return moved.z() > kLeastDepth ? camera_.Project(moved) : pixel;
   }
@@ -89,18 +75,23 @@ class UndoMotion {
   // after the row of its pixel was exposed, and the disparity of its surface changes by `slope` per
   // undistorted pixel. The pixel of the depth image then shows a neighbour of the point on the
   // surface, since the point has moved on.
-  double DepthAt(const Eigen::Vector2d& pixel, const Exposure& exposure, double depth, double delay,
+  double DepthAt(const Eigen::Vector2d& pixel, const Moment& exposure, double depth, double delay,
                  const Eigen::Vector2d& slope) const {
     constexpr int kSteps = 2;  // the second one changes less than 0.1 mm
     const double row_time = exposure.time;
     const double time = row_time + delay;
-    const Turn until_measured(*this, time);
+    const Moment measured = After(time);
     const Eigen::Vector3d ray = camera_.Unproject(pixel, 1.0);
+    const auto undone = [&](double inverse_depth) {
+      return Rotate(-exposure.sine, exposure.versine,
+                    ray / inverse_depth - row_time * velocity_.linear);
+    };
     double inverse = 1.0 / depth;
     Eigen::Vector3d point = ray * depth;
     for (int i = 0; i < kSteps; ++i) {
-      point = exposure.undo * (ray / inverse - row_time * velocity_.linear);
-      const Eigen::Vector3d when_measured = until_measured * point + time * velocity_.linear;
+      point = undone(inverse);
+      const Eigen::Vector3d when_measured =
+          Rotate(measured.sine, measured.versine, point) + time * velocity_.linear;
       if (when_measured.z() < kLeastDepth * depth || point.z() < kLeastDepth * depth) {
         return depth;
       }
@@ -108,7 +99,7 @@ class UndoMotion {
           1.0 / when_measured.z() + slope.dot(pixel - camera_.Project(when_measured)) / camera_.bf;
       inverse = std::max(inverse + 1.0 / depth - expected, kLeastDepth / depth);
     }
-    point = exposure.undo * (ray / inverse - row_time * velocity_.linear);
+    point = undone(inverse);
     return point.z();
   }
 
@@ -126,6 +117,11 @@ class UndoMotion {
 
  private:
   static constexpr double kLeastDepth = 0.05;  // of that in the image as read
+
+  Eigen::Vector3d Rotate(double sine, double versine, const Eigen::Vector3d& vector) const {
+    const Eigen::Vector3d across = axis_of_turn_.cross(vector);
+    return vector + sine * across + versine * axis_of_turn_.cross(across);
+  }
 
   const PinholeCamera& camera_;
   const ReadoutAxis axis_;
@@ -237,7 +233,7 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
     Eigen::Vector2f& pixel = features.keypoints[i].undistorted;
     const Eigen::Vector2d as_read = pixel.cast<double>();
     const Eigen::Vector2d raw = camera.Distort(as_read);
-    const UndoMotion::Exposure exposure = undo.ExposureOf(raw);
+    const UndoMotion::Moment exposure = undo.ExposureOf(raw);
     if (float& depth = features.depth[i]; depth > 0.0F) {
       const Eigen::Vector2d slope =
           has_delay ? DisparitySlope(camera, frame.depth, as_read, raw).value_or(no_slope)

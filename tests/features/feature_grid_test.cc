@@ -9,6 +9,7 @@
 #include <random>
 #include <utility>
 
+#include "features/find_near.h"
 #include "hullslam/util/check.h"
 #include "support/synthetic_world.h"
 
@@ -55,7 +56,7 @@ TEST(FeatureGrid, FindsTheSameAsASearchOfAllKeypoints) {
     for (float y = -60.0f; y < 540.0f; y += 37.0f) {
       for (float x = -60.0f; x < 700.0f; x += 41.0f) {
         std::vector<uint32_t> found;
-        grid.FindNear(keypoints, {x, y}, radius, 2, 5, found);
+        FindNear(grid, keypoints, {x, y}, radius, 2, 5, found);
         std::sort(found.begin(), found.end());
         EXPECT_EQ(found, FindBySearchingAll(keypoints, {x, y}, radius, 2, 5));
         total += found.size();
@@ -71,7 +72,7 @@ TEST(FeatureGrid, FindsEveryKeypointAtItsPosition) {
   for (uint32_t i = 0; i < keypoints.size(); ++i) {
     const Keypoint& keypoint = keypoints[i];
     std::vector<uint32_t> found;
-    grid.FindNear(keypoints, keypoint.undistorted, 0.01f, keypoint.level, keypoint.level, found);
+    FindNear(grid, keypoints, keypoint.undistorted, 0.01f, keypoint.level, keypoint.level, found);
     EXPECT_NE(std::find(found.begin(), found.end(), i), found.end());
   }
 }
@@ -84,7 +85,7 @@ TEST(FeatureGrid, AppendsInOrderOfIndexWithinACell) {
   keypoints[1].undistorted = {300.0f, 300.0f};
   const FeatureGrid grid(keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   std::vector<uint32_t> found = {77};
-  grid.FindNear(keypoints, {100.0f, 100.0f}, 5.0f, 0, 7, found);
+  FindNear(grid, keypoints, {100.0f, 100.0f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found, (std::vector<uint32_t>{77, 0, 2, 3}));
 }
 
@@ -97,12 +98,12 @@ TEST(FeatureGrid, SearchesInTheGivenPositions) {
   const Eigen::Vector2f box(640.0f, 480.0f);
   const FeatureGrid grid(keypoints, positions, box);
   std::vector<uint32_t> found;
-  grid.FindNear(keypoints, {11.0f, 20.0f}, 5.0f, 0, 7, found);
+  FindNear(grid, keypoints, {11.0f, 20.0f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found, (std::vector<uint32_t>{0, 2}));
   const std::vector<uint32_t> kept = {1, 2};
   const std::vector<Keypoint> rest(keypoints.begin() + 1, keypoints.end());
   found.clear();
-  grid.Select(kept).FindNear(rest, {300.0f, 200.0f}, 5.0f, 0, 7, found);
+  FindNear(grid.Select(kept), rest, {300.0f, 200.0f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found, (std::vector<uint32_t>{0}));
   EXPECT_EQ(grid.PositionOf(keypoints, 1), positions[1]);
   EXPECT_THROW(FeatureGrid(rest, positions, box), CheckError);
@@ -113,17 +114,17 @@ TEST(FeatureGrid, RadiusIsExclusive) {
   keypoints[0].undistorted = {100.0f, 100.0f};
   const FeatureGrid grid(keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   std::vector<uint32_t> found;
-  grid.FindNear(keypoints, {105.0f, 100.0f}, 5.0f, 0, 7, found);
-  grid.FindNear(keypoints, {100.0f, 95.0f}, 5.0f, 0, 7, found);
+  FindNear(grid, keypoints, {105.0f, 100.0f}, 5.0f, 0, 7, found);
+  FindNear(grid, keypoints, {100.0f, 95.0f}, 5.0f, 0, 7, found);
   EXPECT_TRUE(found.empty());
-  grid.FindNear(keypoints, {104.99f, 95.01f}, 5.0f, 0, 7, found);
+  FindNear(grid, keypoints, {104.99f, 95.01f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found.size(), 1u);
 }
 
 TEST(FeatureGrid, FindsNothingWithoutKeypoints) {
   std::vector<uint32_t> found;
-  FeatureGrid().FindNear({}, {1.0f, 1.0f}, 100.0f, 0, 7, found);
-  FeatureGrid({}, {0.0f, 0.0f}, {640.0f, 480.0f}).FindNear({}, {1.0f, 1.0f}, 9.0f, 0, 7, found);
+  FindNear(FeatureGrid(), {}, {1.0f, 1.0f}, 100.0f, 0, 7, found);
+  FindNear(FeatureGrid({}, {0.0f, 0.0f}, {640.0f, 480.0f}), {}, {1.0f, 1.0f}, 9.0f, 0, 7, found);
   EXPECT_TRUE(found.empty());
 }
 
@@ -135,8 +136,8 @@ TEST(FeatureGrid, AcceptsCentersThatAreFarAwayOrNotFinite) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   std::vector<uint32_t> found;
   for (const float far : {1e30f, -1e30f, kInfinity, -kInfinity, kNan}) {
-    grid.FindNear(keypoints, {far, 100.0f}, 20.0f, 0, 7, found);
-    grid.FindNear(keypoints, {100.0f, far}, 20.0f, 0, 7, found);
+    FindNear(grid, keypoints, {far, 100.0f}, 20.0f, 0, 7, found);
+    FindNear(grid, keypoints, {100.0f, far}, 20.0f, 0, 7, found);
   }
   EXPECT_TRUE(found.empty());
 }
@@ -144,7 +145,7 @@ TEST(FeatureGrid, AcceptsCentersThatAreFarAwayOrNotFinite) {
 TEST(FeatureGrid, RejectsMoreKeypointsThanAnIndexOf16BitsCanCount) {
   std::vector<Keypoint> keypoints = MakeKeypoints(65535);
   std::vector<uint32_t> found;
-  MakeGrid(keypoints).FindNear(keypoints, keypoints.back().undistorted, 0.5f, 0, 7, found);
+  FindNear(MakeGrid(keypoints), keypoints, keypoints.back().undistorted, 0.5f, 0, 7, found);
   EXPECT_EQ(std::count(found.begin(), found.end(), 65534u), 1);
   keypoints.emplace_back();
   EXPECT_THROW(MakeGrid(keypoints), CheckError);
@@ -164,14 +165,14 @@ TEST(FeatureGrid, OfAPartOfTheKeypointsEqualsANewGrid) {
     for (float x = -60.0f; x < 700.0f; x += 41.0f) {
       std::vector<uint32_t> found;
       std::vector<uint32_t> expected;
-      selected.FindNear(part, {x, y}, 60.0f, 0, 7, found);
-      made.FindNear(part, {x, y}, 60.0f, 0, 7, expected);
+      FindNear(selected, part, {x, y}, 60.0f, 0, 7, found);
+      FindNear(made, part, {x, y}, 60.0f, 0, 7, expected);
       EXPECT_EQ(found, expected);
     }
   }
   std::vector<uint32_t> found;
-  MakeGrid(keypoints).Select({}).FindNear({}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
-  FeatureGrid().Select({}).FindNear({}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
+  FindNear(MakeGrid(keypoints).Select({}), {}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
+  FindNear(FeatureGrid().Select({}), {}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
   EXPECT_TRUE(found.empty());
 }
 
@@ -196,7 +197,7 @@ TEST(FrameFeatures, GridIsValidAfterAMove) {
   features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   const FrameFeatures moved = std::move(features);
   std::vector<uint32_t> found;
-  moved.grid.FindNear(moved.keypoints, {501.0f, 299.0f}, 5.0f, 0, 7, found);
+  FindNear(moved.grid, moved.keypoints, {501.0f, 299.0f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found, std::vector<uint32_t>{1});
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "features/find_near.h"
 #include "hullslam/util/error.h"
 #include "support/expect_error.h"
 #include "support/fisheye_camera.h"
@@ -298,8 +299,8 @@ TEST_F(FrameBuilderTest, TheGridFindsEveryKeypointAtItsRawPixel) {
     const Keypoint& keypoint = features.keypoints[i];
     std::vector<uint32_t> found;
     const Eigen::Vector2d raw = sensor_.camera.Distort(keypoint.undistorted.cast<double>());
-    features.grid.FindNear(features.keypoints, raw.cast<float>(), 0.5f, keypoint.level,
-                           keypoint.level, found);
+    FindNear(features.grid, features.keypoints, raw.cast<float>(), 0.5f, keypoint.level,
+             keypoint.level, found);
     EXPECT_NE(std::find(found.begin(), found.end(), i), found.end()) << i;
   }
 }
@@ -682,8 +683,8 @@ TEST_P(SlantedPlane, DepthAgreesWithTheParallaxOfTwoViews) {
     const Eigen::Vector2d far =
         sensor_.camera.Distort(seen.keypoints[i].undistorted.cast<double>());
     std::vector<uint32_t> near;
-    b->features.grid.FindNear(b->features.keypoints, expected.cast<float>(), 3.0F,
-                              seen.keypoints[i].level, seen.keypoints[i].level, near);
+    FindNear(b->features.grid, b->features.keypoints, expected.cast<float>(), 3.0F,
+             seen.keypoints[i].level, seen.keypoints[i].level, near);
     if (near.size() == 1 &&
         HammingDistance(seen.descriptors[i], b->features.descriptors[near[0]]) <= 40) {
       const Eigen::Vector2d found =

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "features/find_near.h"
 #include "support/fisheye_camera.h"
 
 namespace hullslam {
@@ -18,7 +19,8 @@ std::vector<uint32_t> Near(const PinholeCamera& camera, const Eigen::Vector2d& c
   keypoints[0].undistorted = {1400.0f, 240.0f};
   keypoints[1].undistorted = {1000.0f, 240.0f};
   std::vector<uint32_t> found;
-  MakeKeypointGrid(keypoints, camera).FindNear(keypoints, center.cast<float>(), 40.0f, 0, 7, found);
+  FindNear(MakeKeypointGrid(keypoints, camera), keypoints, center.cast<float>(), 40.0f, 0, 7,
+           found);
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "features/find_near.h"
 #include "hullslam/util/check.h"
 #include "support/fisheye_camera.h"
 #include "support/synthetic_world.h"
@@ -223,7 +224,7 @@ TEST(WithGlobalShutter, FindsKeypointsWhereTheyAreNow) {
       WithGlobalShutter(FrameOf({{600.0, 470.0}}), sensor, {.linear = {2.0, -3.0, 0.0}}, depths);
   const FrameFeatures& features = corrected->features;
   std::vector<uint32_t> found;
-  features.grid.FindNear(features.keypoints, features.keypoints[0].undistorted, 0.5F, 0, 7, found);
+  FindNear(features.grid, features.keypoints, features.keypoints[0].undistorted, 0.5F, 0, 7, found);
   EXPECT_EQ(found, std::vector<uint32_t>{0});
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "features/find_near.h"
 #include "frame/rolling_shutter.h"
 #include "map/keyframe_graph.h"
 #include "map/made_map.h"
@@ -184,8 +185,8 @@ TEST(ReducedFrame, FindsItsKeypointsUnderTheirNewIndices) {
   const auto reduced = ReduceFrame(frame, std::vector<uint32_t>{2, 4, 9}, {});
   for (uint32_t i = 0; i < 3; ++i) {
     std::vector<uint32_t> found;
-    reduced->features.grid.FindNear(reduced->features.keypoints,
-                                    reduced->features.keypoints[i].undistorted, 1.0f, 0, 7, found);
+    FindNear(reduced->features.grid, reduced->features.keypoints,
+             reduced->features.keypoints[i].undistorted, 1.0f, 0, 7, found);
     EXPECT_EQ(found, std::vector<uint32_t>{i});
   }
   EXPECT_TRUE(reduced->detections.empty());
@@ -214,7 +215,7 @@ TEST(ReducedFrame, CanHaveNoKeypoints) {
   const auto reduced = ReduceFrame(MakeFullFrame(), {}, {});
   EXPECT_EQ(reduced->features.size(), 0u);
   std::vector<uint32_t> found;
-  reduced->features.grid.FindNear({}, {100.0f, 100.0f}, 500.0f, 0, 7, found);
+  FindNear(reduced->features.grid, {}, {100.0f, 100.0f}, 500.0f, 0, 7, found);
   EXPECT_TRUE(found.empty());
 }
 

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "features/find_near.h"
 #include "files/read_file.h"
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
@@ -173,7 +174,7 @@ TEST_F(MapFileTest, KeepsEveryFieldOfAFrame) {
     EXPECT_EQ(found.features.keypoints[i].level, frame->features.keypoints[i].level);
   }
   std::vector<uint32_t> near;
-  found.features.grid.FindNear(found.features.keypoints, {32.0f, 100.0f}, 1.5f, 0, 7, near);
+  FindNear(found.features.grid, found.features.keypoints, {32.0f, 100.0f}, 1.5f, 0, 7, near);
   EXPECT_EQ(near, (std::vector<uint32_t>{1, 2, 3})) << "the grid is made again";
   ExpectSameDetection(found.detections[0], frame->detections[0]);
 }

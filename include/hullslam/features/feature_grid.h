@@ -21,20 +21,14 @@ class FeatureGrid {
   // 65535 keypoints.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
-  // Sorts by these positions, one per keypoint, in the box from 0 to `box_max`. FindNear() compares
-  // them too.
+  // Sorts by these positions, one per keypoint, in the box from 0 to `box_max`. A
+  // GridSearch compares them too.
   FeatureGrid(std::span<const Keypoint> keypoints, std::vector<Eigen::Vector2f> positions,
               const Eigen::Vector2f& box_max);
 
   // The grid of the keypoints with these indices, which increase. Their new indices are their
   // indices in `kept`. A grid without keypoints stays as it is.
   FeatureGrid Select(std::span<const uint32_t> kept) const;
-
-  // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
-  // from min_level to max_level. `keypoints` are as in the constructor. Cells are visited one
-  // after the other; within a cell the indices are in increasing order.
-  void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
-                int min_level, int max_level, std::vector<uint32_t>& found) const;
 
   // The position by which a keypoint is sorted.
   Eigen::Vector2f PositionOf(std::span<const Keypoint> keypoints, uint32_t keypoint) const {
@@ -43,9 +37,6 @@ class FeatureGrid {
 
  private:
   friend class GridSearch;
-  // Calls visit(begin, end) with ranges of order_: those of the cells that the window touches.
-  template <typename Visitor>
-  void ForEachRange(const Eigen::Vector2f& center, float radius, const Visitor& visit) const;
   void Sort(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_max);
   int Column(float x) const;
   int Row(float y) const;
@@ -61,12 +52,14 @@ class FeatureGrid {
   std::vector<Eigen::Vector2f> positions_;  // empty: as in the keypoints
 };
 
-// For many calls of FindNear() in one image: keeps what it compares in the order of the cells.
+// Searches of keypoints in one image. Keeps what it compares in the order of the cells.
 class GridSearch {
  public:
-  // Both must outlive this object.
+  // The grid must outlive this object, and it must be that of the keypoints.
   GridSearch(const FeatureGrid& grid, std::span<const Keypoint> keypoints);
-  // The same keypoints in the same order. They are valid until the next call.
+  // The indices of all keypoints with |dx| < radius, |dy| < radius and a level from min_level to
+  // max_level. Cells are visited one after the other; within a cell the indices are in increasing
+  // order. They are valid until the next call.
   std::span<const uint32_t> FindNear(const Eigen::Vector2f& center, float radius, int min_level,
                                      int max_level);
 
