@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -41,18 +40,15 @@ class UndoMotion {
         readout_time_(sensor.readout_time),
         velocity_(velocity),
         speed_(velocity.angular.norm()),
-        axis_of_turn_(speed_ > 0.0 ? Eigen::Vector3d(velocity.angular / speed_)
-                                   : Eigen::Vector3d::Zero()) {}
+        axis_of_turn_(velocity.angular.normalized()) {}
 
-  // A moment t, s after the exposure of the middle row, and the rotation Exp(t w) until then by the
-  // formula of Rodrigues: all rotations have one axis.
+  // A time t, s after the exposure of the middle row, and the rotation Exp(t w) until then.
   struct Moment {
     double time;
-    double sine;     // of the angle
-    double versine;  // 1 - cosine
+    Eigen::Matrix3d turn;
   };
   Moment After(double time) const {
-    return {time, std::sin(time * speed_), 1.0 - std::cos(time * speed_)};
+    return {time, Eigen::AngleAxisd(time * speed_, axis_of_turn_).toRotationMatrix()};
   }
   Moment ExposureOf(const Eigen::Vector2d& raw_pixel) const {
     return After((raw_pixel[axis_.index] / axis_.size - 0.5) * readout_time_);
@@ -66,7 +62,7 @@ class UndoMotion {
                        double inverse_depth) const {
     const Eigen::Vector3d ray =
         camera_.Unproject(pixel, 1.0) - exposure.time * inverse_depth * velocity_.linear;
-    const Eigen::Vector3d moved = Rotate(-exposure.sine, exposure.versine, ray);
+    const Eigen::Vector3d moved = exposure.turn.transpose() * ray;
     // A point that the middle row could not see: its depth or the velocity is wrong.
     return moved.z() > kLeastDepth ? camera_.Project(moved) : pixel;
   }
@@ -78,20 +74,16 @@ class UndoMotion {
   double DepthAt(const Eigen::Vector2d& pixel, const Moment& exposure, double depth, double delay,
                  const Eigen::Vector2d& slope) const {
     constexpr int kSteps = 2;  // the second one changes less than 0.1 mm
-    const double row_time = exposure.time;
-    const double time = row_time + delay;
-    const Moment measured = After(time);
+    const Moment measured = After(exposure.time + delay);
     const Eigen::Vector3d ray = camera_.Unproject(pixel, 1.0);
-    const auto undone = [&](double inverse_depth) {
-      return Rotate(-exposure.sine, exposure.versine,
-                    ray / inverse_depth - row_time * velocity_.linear);
+    const auto point_at = [&](double inverse) -> Eigen::Vector3d {
+      return exposure.turn.transpose() * (ray / inverse - exposure.time * velocity_.linear);
     };
     double inverse = 1.0 / depth;
-    Eigen::Vector3d point = ray * depth;
     for (int i = 0; i < kSteps; ++i) {
-      point = undone(inverse);
+      const Eigen::Vector3d point = point_at(inverse);
       const Eigen::Vector3d when_measured =
-          Rotate(measured.sine, measured.versine, point) + time * velocity_.linear;
+          measured.turn * point + measured.time * velocity_.linear;
       if (when_measured.z() < kLeastDepth * depth || point.z() < kLeastDepth * depth) {
         return depth;
       }
@@ -99,8 +91,7 @@ class UndoMotion {
           1.0 / when_measured.z() + slope.dot(pixel - camera_.Project(when_measured)) / camera_.bf;
       inverse = std::max(inverse + 1.0 / depth - expected, kLeastDepth / depth);
     }
-    point = undone(inverse);
-    return point.z();
+    return point_at(inverse).z();
   }
 
   // The derivative of Move() at a pixel.
@@ -118,17 +109,12 @@ class UndoMotion {
  private:
   static constexpr double kLeastDepth = 0.05;  // of that in the image as read
 
-  Eigen::Vector3d Rotate(double sine, double versine, const Eigen::Vector3d& vector) const {
-    const Eigen::Vector3d across = axis_of_turn_.cross(vector);
-    return vector + sine * across + versine * axis_of_turn_.cross(across);
-  }
-
   const PinholeCamera& camera_;
   const ReadoutAxis axis_;
   const double readout_time_;
   const PointVelocity velocity_;
-  const double speed_;  // rad/s
-  const Eigen::Vector3d axis_of_turn_;
+  const double speed_;                  // rad/s
+  const Eigen::Vector3d axis_of_turn_;  // zero without a turn
 };
 
 // The line after the motion of its points near `near`.

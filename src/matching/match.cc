@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
-#include <vector>
+#include <tuple>
 
 namespace hullslam {
 namespace {
@@ -49,21 +48,15 @@ std::vector<float> Angles(const FrameFeatures& features) {
 }  // namespace
 
 void KeepBestPerKeypoint(std::vector<Match>& matches) {
-  const auto by_query = [](const Match& a, const Match& b) { return a.query < b.query; };
-  if (!std::ranges::is_sorted(matches, by_query)) {
-    std::ranges::sort(matches, by_query);
-  }
-  std::vector<const Match*> best;  // per keypoint
-  for (const Match& match : matches) {
-    best.resize(std::max<size_t>(best.size(), match.keypoint + 1));
-    if (best[match.keypoint] == nullptr || match.distance < best[match.keypoint]->distance) {
-      best[match.keypoint] = &match;
-    }
-  }
-  std::vector<Match> kept;
-  std::ranges::copy_if(matches, std::back_inserter(kept),
-                       [&](const Match& match) { return best[match.keypoint] == &match; });
-  matches = std::move(kept);
+  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    return std::tie(a.keypoint, a.distance, a.query) < std::tie(b.keypoint, b.distance, b.query);
+  });
+  const auto end = std::unique(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    return a.keypoint == b.keypoint;
+  });
+  matches.erase(end, matches.end());
+  std::sort(matches.begin(), matches.end(),
+            [](const Match& a, const Match& b) { return a.query < b.query; });
 }
 
 void KeepConsistentRotations(std::span<const float> query_angles,

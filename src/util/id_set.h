@@ -88,9 +88,9 @@ class IdSet {
     Check(id.IsValid(), "an id that is not valid cannot be in a set");
     const uint32_t number = id.slot() / kGroupSize;
     if (number >= places_.size()) {
-      places_.resize(number + 1, kNoGroup);
+      places_.resize(number + 1, 0);
     }
-    if (places_[number] == kNoGroup) {
+    if (places_[number] == 0) {
       places_[number] = static_cast<uint32_t>(groups_.size());
       groups_.emplace_back();
     }
@@ -108,10 +108,7 @@ class IdSet {
 
   bool Contains(IdType id) const {
     const uint32_t number = id.slot() / kGroupSize;
-    if (number >= places_.size() || places_[number] == kNoGroup) {
-      return false;
-    }
-    const Group& group = groups_[places_[number]];
+    const Group& group = groups_[number < places_.size() ? places_[number] : 0];
     return (group.bits & BitOf(id)) != 0 && group.IdAt(id.slot()) == id;
   }
 
@@ -122,9 +119,6 @@ class IdSet {
     std::vector<IdType> ids;
     ids.reserve(size_);
     for (uint32_t number = 0; number < places_.size(); ++number) {
-      if (places_[number] == kNoGroup) {
-        continue;
-      }
       const Group& group = groups_[places_[number]];
       for (uint64_t left = group.bits; left != 0; left &= left - 1) {
         const auto bit = static_cast<uint32_t>(std::countr_zero(left));
@@ -136,7 +130,6 @@ class IdSet {
 
  private:
   static constexpr uint32_t kGroupSize = 64;
-  static constexpr uint32_t kNoGroup = UINT32_MAX;
 
   struct WithoutGenerations {
     uint64_t bits = 0;
@@ -155,8 +148,8 @@ class IdSet {
 
   static uint64_t BitOf(IdType id) { return uint64_t{1} << (id.slot() % kGroupSize); }
 
-  std::vector<uint32_t> places_;  // of the groups in groups_
-  std::vector<Group> groups_;
+  std::vector<uint32_t> places_;                       // of the groups in groups_; 0: no member
+  std::vector<Group> groups_ = std::vector<Group>(1);  // the first one stays empty
   size_t size_ = 0;
 };
 
