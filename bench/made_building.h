@@ -36,13 +36,15 @@ class MadeBuilding {
   static constexpr double kGapEvery = 200.0;  // s
 
   // The robot works for `seconds`. `vocabulary` may be null. If nothing changes, the objects stay
-  // where they are and it is always day. With another `seed` it is another
-  // building, which has nothing in common with the first one but the kinds of its objects.
+  // where they are and it is always day. With another `seed` it is another building, which has
+  // nothing in common with the first one but the kinds of its objects. With more than two `lights`
+  // they follow each other, and the points look different in each.
   MadeBuilding(double seconds, const Sensor& sensor, const Vocabulary* vocabulary,
-               bool is_unchanged = false, uint64_t seed = 100)
+               bool is_unchanged = false, uint64_t seed = 100, size_t lights = 2)
       : sensor_(sensor),
         vocabulary_(vocabulary),
         seed_(seed),
+        lights_(is_unchanged ? 1 : lights),
         seconds_(seconds),
         day_(is_unchanged ? 1e9 : std::min(3600.0, seconds / 3.0)),
         move_every_(is_unchanged ? 1e9 : std::min(600.0, seconds / 8.0)) {
@@ -128,6 +130,35 @@ class MadeBuilding {
     return truth;
   }
 
+  // What a descriptor shows at a time: the point next to a position, and in which light.
+  struct Shown {
+    size_t point = SIZE_MAX;  // SIZE_MAX: no point
+    size_t light = 0;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  };
+  Shown WhatShows(const Descriptor& descriptor, const Eigen::Vector3d& near, double time) const {
+    constexpr int kMostBits = 8;  // that noise changes
+    Shown shown;
+    for (size_t i = 0; i < points_.size(); ++i) {
+      const Point& point = points_[i];
+      size_t light = 0;
+      while (light < lights_ && HammingDistance(descriptor, LookOf(point, light)) > kMostBits) {
+        ++light;
+      }
+      if (light == lights_) {
+        continue;
+      }
+      const Eigen::Vector3d position = point.object == SIZE_MAX
+                                           ? OnRing(point.along, point.height, kWall)
+                                           : FrontPoint(EllipsoidAt(point.object, time),
+                                                        point.on_object.x(), point.on_object.y());
+      if (shown.point == SIZE_MAX || (position - near).norm() < (shown.position - near).norm()) {
+        shown = {i, light, position};  // two rooms are equal
+      }
+    }
+    return shown;
+  }
+
  private:
   static constexpr double kCourse = 13.0;  // m, radius of the course
   static constexpr double kWall = 5.0 * kRooms / (2.0 * std::numbers::pi);  // m, of the wall
@@ -135,9 +166,10 @@ class MadeBuilding {
   static constexpr size_t kSlots = 3;    // places of an object
 
   struct Point {
-    double along = 0.0;                                   // m along the wall
-    double height = 0.0;                                  // m, downwards
-    std::array<Descriptor, 2> descriptors{};              // by day and by lamp
+    double along = 0.0;   // m along the wall
+    double height = 0.0;  // m, downwards
+    Descriptor descriptor{};
+    bool changes = false;                                 // with the light
     float angle = 0.0f;                                   // rad
     double max_distance = 0.0;                            // m, at which it is seen at level 0
     size_t object = SIZE_MAX;                             // on which it is; SIZE_MAX: the wall
@@ -169,12 +201,9 @@ class MadeBuilding {
     const double begin = 5.0 * static_cast<double>(room);
     const auto make_point = [&] {
       Point& point = points_.emplace_back();
-      for (Descriptor& descriptor : point.descriptors) {
-        descriptor = {random(), random(), random(), random()};
-      }
-      if (random() % 10 >= 4) {
-        point.descriptors[1] = point.descriptors[0];
-      }
+      point.descriptor = {random(), random(), random(), random()};
+      random.discard(4);
+      point.changes = random() % 10 < 4;
       point.angle = static_cast<float>(random() % 6283) * 1e-3f;
       point.max_distance = 2.0 + 1e-3 * static_cast<double>(random() % 4000);
       return &point;
@@ -221,7 +250,16 @@ class MadeBuilding {
         object.half_axes};
   }
 
-  bool IsLamp(double time) const { return std::fmod(time, day_) >= 0.5 * day_; }
+  size_t LightAt(double time) const { return static_cast<size_t>(time / (0.5 * day_)) % lights_; }
+  static Descriptor LookOf(const Point& point, size_t light) {
+    Descriptor descriptor = point.descriptor;
+    if (point.changes && light > 0) {
+      for (uint64_t& word : descriptor) {
+        word ^= HashSeed(word, static_cast<uint32_t>(light), "light");
+      }
+    }
+    return descriptor;
+  }
 
   // The way along the wall from the camera's own place, to both sides.
   static double Beside(double along, double camera) {
@@ -346,7 +384,7 @@ class MadeBuilding {
     }
     const int level = sensor_.levels.PredictLevel(in_cam.norm(), point.max_distance);
     const double scale = static_cast<double>(sensor_.levels.scale[static_cast<size_t>(level)]);
-    Descriptor descriptor = point.descriptors[IsLamp(time) ? 1 : 0];
+    Descriptor descriptor = LookOf(point, LightAt(time));
     descriptor[random() % 4] ^= uint64_t{1} << (random() % 64);
     const Eigen::Vector2d error(scale * noise(random), scale * noise(random));
     AddKeypoint(pixel + error, in_cam.z() * (1.0 + 2e-3 * noise(random)), level, point.angle,
@@ -407,6 +445,7 @@ class MadeBuilding {
   const Sensor& sensor_;
   const Vocabulary* const vocabulary_;
   const uint64_t seed_;  // of the rooms
+  const size_t lights_;
   const double seconds_;
   const double day_;           // s, of daylight and lamplight together
   const double move_every_;    // s; after four of these times each movable object is elsewhere

@@ -23,6 +23,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <random>
@@ -217,6 +218,7 @@ struct Shift {
   double hours = 10.0;
   PipelineKind kind = PipelineKind::kSequential;
   int max_keyframes = 0;
+  size_t lights = 2;          // in which the building looks different, one after the other
   bool is_unchanged = false;  // objects stay where they are, and the light is the same
   size_t kidnapped = 0;
 };
@@ -237,7 +239,8 @@ class Patrol {
       : shift_(shift),
         vocabulary_(std::make_shared<const Vocabulary>(ReadVocabulary(FindDefaultVocabulary()))),
         sensor_(BenchSensor()),
-        building_(3600.0 * shift.hours, sensor_, vocabulary_.get(), shift.is_unchanged),
+        building_(3600.0 * shift.hours, sensor_, vocabulary_.get(), shift.is_unchanged, 100,
+                  shift.lights),
         system_(Options(), shift.kind) {}
 
   void Run() {
@@ -259,6 +262,7 @@ class Patrol {
       }
     }
     Judge(seconds);
+    JudgeLandmarks(seconds);
     if (shift_.kidnapped > 0) {
       Kidnap();
     }
@@ -308,7 +312,8 @@ class Patrol {
   Rigid3 TruthOf(const Frame& frame) const { return building_.CamFromWorld(frame.timestamp); }
 
   // A loop is false if its two keyframes cannot see the same part of the wall, or if the map places
-  // them wrongly to each other once it is closed.
+  // them wrongly to each other once it is closed. The edges of a culled keyframe, which others get,
+  // count again.
   void CountLoops(const Map& map) {
     constexpr double kFar = 7.0;    // m: twice the reach, and what the camera turns aside
     constexpr double kWrong = 0.5;  // m
@@ -411,6 +416,35 @@ class Patrol {
         peak_mb_ / map_mb_, map_mb_, save_s_);
   }
 
+  // Prints what the landmarks really show.
+  void JudgeLandmarks(double time) const {
+    constexpr double kFar = 0.1;  // m
+    const std::shared_ptr<const Map> map = system_.map();
+    std::map<std::array<size_t, 2>, size_t> copies;
+    size_t nothing = 0;
+    size_t left = 0;
+    size_t again = 0;
+    std::vector<size_t> right(std::max<size_t>(2, shift_.lights));
+    map->landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
+      const Eigen::Vector3d position = truth_from_map_ * landmark.position;
+      const MadeBuilding::Shown shown = building_.WhatShows(landmark.descriptor, position, time);
+      if (shown.point == SIZE_MAX) {
+        ++nothing;
+      } else if ((shown.position - position).norm() > kFar) {
+        ++left;
+      } else if (copies[{shown.point, shown.light}]++ > 0) {
+        ++again;
+      } else {
+        ++right[shown.light];
+      }
+    });
+    fmt::print(
+        "landmarks at the end: {}; of points as they look in each light (always: in the first): "
+        "{}; "
+        "{} second ones, {} not where the point is, {} of no point\n",
+        map->landmarks().size(), fmt::join(right, ", "), again, left, nothing);
+  }
+
   // Puts the camera at a place, and asks for its pose with one image after the other.
   void PutAt(const MadeBuilding& building, const Relocaliser& relocaliser, double time,
              uint32_t number, Kidnapped& outcome) const {
@@ -510,6 +544,8 @@ int main(int argc, char** argv) {
       port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--hours") {
       shift.hours = std::strtod(argv[i + 1], nullptr);
+    } else if (std::string_view(argv[i]) == "--lights") {
+      shift.lights = std::max<size_t>(1, std::strtoul(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--max-keyframes") {
       shift.max_keyframes = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--kidnapped") {
@@ -523,7 +559,8 @@ int main(int argc, char** argv) {
     fmt::print(
         stderr,
         "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
-        "       scale_bench --hours H [--kidnapped N] [--max-keyframes N] [--unchanged] "
+        "       scale_bench --hours H [--kidnapped N] [--lights N] [--max-keyframes N] "
+        "[--unchanged] "
         "[--threaded]\n"
         "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
         "frames\n");

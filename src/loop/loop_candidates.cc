@@ -21,13 +21,11 @@ constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
 std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
   const Keyframe& keyframe = map.keyframes().At(query);
   std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(*keyframe.frame));
-  IdSet<KeyframeId> covisible;
-  for (const Covisible& other : keyframe.covisible) {
-    covisible.Insert(other.keyframe);
-  }
   double least = 1.0;
   for (const SimilarKeyframe& one : similar) {
-    least = covisible.Contains(one.keyframe) ? std::min(least, one.score) : least;
+    const bool is_covisible =
+        std::ranges::binary_search(keyframe.covisible, one.keyframe, {}, &Covisible::keyframe);
+    least = is_covisible ? std::min(least, one.score) : least;
   }
   const IdSet<KeyframeId> connected = ConnectedTo(map, query);
   std::erase_if(similar, [&](const SimilarKeyframe& one) {
@@ -45,26 +43,13 @@ std::vector<KeyframeSet> SeenByNeighbours(const Map& map, KeyframeId query) {
   std::vector<KeyframeSet> seen;
   for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kSupporters)) {
     KeyframeSet& similar = seen.emplace_back();
-    for (const SimilarKeyframe& one : FindSimilar(map, neighbour)) {
-      similar.Insert(one.keyframe);
-    }
+    std::ranges::for_each(FindSimilar(map, neighbour),
+                          [&](const SimilarKeyframe& one) { similar.Insert(one.keyframe); });
   }
   return seen;
 }
 
 }  // namespace
-
-IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
-  IdSet<KeyframeId> connected;
-  connected.Insert(keyframe);
-  for (const Covisible& first : map.keyframes().At(keyframe).covisible) {
-    connected.Insert(first.keyframe);
-    for (const Covisible& second : map.keyframes().At(first.keyframe).covisible) {
-      connected.Insert(second.keyframe);
-    }
-  }
-  return connected;
-}
 
 std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query) {
   const std::vector<KeyframeId> keyframes = BestOfPlaces(map, FindSimilar(map, query));
@@ -76,11 +61,9 @@ std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query) 
   for (const KeyframeId keyframe : keyframes) {
     const std::vector<KeyframeId> place = PlaceOf(map, keyframe);
     const auto supports = [&](const KeyframeSet& seen) {
-      return std::any_of(place.begin(), place.end(),
-                         [&](KeyframeId member) { return seen.Contains(member); });
+      return std::ranges::any_of(place, [&](KeyframeId member) { return seen.Contains(member); });
     };
-    const auto supporters =
-        std::count_if(seen_by_neighbours.begin(), seen_by_neighbours.end(), supports);
+    const auto supporters = std::ranges::count_if(seen_by_neighbours, supports);
     candidates.push_back({keyframe, static_cast<int>(supporters)});
   }
   return candidates;
@@ -107,11 +90,10 @@ std::vector<KeyframeId> Elsewhere(const Map& map, KeyframeId query) {
 // Whether a loop leads from one of the keyframes to one of the others.
 bool AreJoined(const Map& map, const std::vector<KeyframeId>& some,
                const std::vector<KeyframeId>& others) {
-  return std::any_of(some.begin(), some.end(), [&](KeyframeId id) {
+  return std::ranges::any_of(some, [&](KeyframeId id) {
     const std::vector<KeyframeId>& loops = map.keyframes().At(id).loops;
-    return std::any_of(loops.begin(), loops.end(), [&](KeyframeId end) {
-      return std::binary_search(others.begin(), others.end(), end);
-    });
+    return std::ranges::any_of(
+        loops, [&](KeyframeId end) { return std::ranges::binary_search(others, end); });
   });
 }
 
@@ -119,9 +101,8 @@ bool AreJoined(const Map& map, const std::vector<KeyframeId>& some,
 size_t CountShared(const Map& map, KeyframeId query, const std::vector<KeyframeId>& others) {
   const std::vector<LandmarkId> of_query = ObservedLandmarks(map, std::span(&query, 1));
   const std::vector<LandmarkId> of_others = ObservedLandmarks(map, others);
-  return static_cast<size_t>(std::count_if(of_query.begin(), of_query.end(), [&](LandmarkId id) {
-    return std::binary_search(of_others.begin(), of_others.end(), id);
-  }));
+  return static_cast<size_t>(std::ranges::count_if(
+      of_query, [&](LandmarkId id) { return std::ranges::binary_search(of_others, id); }));
 }
 
 }  // namespace

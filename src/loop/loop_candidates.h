@@ -21,10 +21,6 @@ struct LoopCandidate {
   int supporters = 0;
 };
 
-// The keyframes that tracking connects to a keyframe: the keyframe itself and all keyframes within
-// two steps of the covisibility graph.
-IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe);
-
 // Keyframes that look like `query` although tracking does not connect them to it. A candidate is at
 // least as similar to the query as the least similar of the query's covisible keyframes. The most
 // similar candidate comes first. Among candidates that are covisible with each other, only the most

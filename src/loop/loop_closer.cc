@@ -35,13 +35,11 @@ bool AreApart(const Map& map, KeyframeId a, KeyframeId b) {
   return IslandOf(map, a) != IslandOf(map, b);
 }
 
-// Whether the loop edge is in the map. Edges of a culled keyframe belong to its nearest ancestor.
+// Whether the loop edge is in the map. Those of a culled keyframe were handed to others.
 bool AreJoined(const Map& map, const MapCorrection::LoopEdge& edge) {
-  const KeyframeId a = map.NearestAlive(edge.a);
-  const KeyframeId b = map.NearestAlive(edge.b);
-  const Keyframe* const keyframe = map.keyframes().Find(a);
-  return a == b || (keyframe != nullptr &&
-                    std::binary_search(keyframe->loops.begin(), keyframe->loops.end(), b));
+  const Keyframe* const a = map.keyframes().Find(edge.a);
+  return a == nullptr || !map.keyframes().Contains(edge.b) ||
+         std::binary_search(a->loops.begin(), a->loops.end(), edge.b);
 }
 
 double CameraDistance(const Rigid3& a, const Rigid3& b) {

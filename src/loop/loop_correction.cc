@@ -10,6 +10,7 @@
 #include "objects/fusion.h"
 #include "optim/bundle_adjustment.h"
 #include "optim/pose_graph.h"
+#include "places/similar_places.h"
 #include "util/lists.h"
 
 namespace hullslam {
@@ -62,9 +63,8 @@ class EssentialGraph {
       AddMeasured(keyframe.parent, id, 1.0);
     }
     for (const Covisible& other : keyframe.covisible) {
-      const bool is_in_tree =
-          other.keyframe == keyframe.parent ||
-          std::binary_search(keyframe.children.begin(), keyframe.children.end(), other.keyframe);
+      const bool is_in_tree = other.keyframe == keyframe.parent ||
+                              std::ranges::binary_search(keyframe.children, other.keyframe);
       if (other.keyframe < id && other.shared >= kStrong && !is_in_tree) {
         AddMeasured(other.keyframe, id, 1.0);
       }
@@ -125,15 +125,6 @@ void SearchAndMerge(const Map& map, const Sensor& sensor, const std::vector<Keyf
 }
 
 }  // namespace
-
-std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe) {
-  std::vector<KeyframeId> around{keyframe};
-  for (const Covisible& other : map.keyframes().At(keyframe).covisible) {
-    around.push_back(other.keyframe);
-  }
-  std::sort(around.begin(), around.end());
-  return around;
-}
 
 MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale) {
   const Rigid3 world_from_query = Inverse(map.keyframes().At(loop.query).cam_from_world);

@@ -14,9 +14,6 @@
 
 namespace hullslam {
 
-// The keyframe and all its covisible keyframes, by increasing id.
-std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe);
-
 // The poses of all keyframes of the loop's island after a pose graph has spread the error of the
 // loop over them, and the loop's edge. The graph has the edges of the spanning tree, of strong
 // covisibility, of earlier loops and of this one (the essential graph, Mur-Artal and Tardos 2014).

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "loop/loop_correction.h"
 #include "objects/visibility.h"
+#include "places/similar_places.h"
 #include "util/lists.h"
 
 namespace hullslam {
@@ -37,8 +37,8 @@ bool AreAtOneLocation(const Ellipsoid& a, const Ellipsoid& b) {
 
 // Whether a detection of one object has the same class as a detection of the other.
 bool ShareClass(const ObjectLandmark& a, const ObjectLandmark& b) {
-  return std::any_of(a.votes.begin(), a.votes.end(),
-                     [&](const auto& vote) { return b.votes.contains(vote.first); });
+  return std::ranges::any_of(a.votes,
+                             [&](const auto& vote) { return b.votes.contains(vote.first); });
 }
 
 // Whether a mask of the keyframe shows a thing of the object's class at the object's location. Only

@@ -13,19 +13,18 @@
 namespace hullslam {
 namespace {
 
-template <typename IdType>
-std::vector<IdType> Select(const std::vector<IdType>& ids, std::span<const uint32_t> indices) {
-  std::vector<IdType> selected;
+template <typename Value>
+std::vector<Value> Select(const std::vector<Value>& values, std::span<const uint32_t> indices) {
+  std::vector<Value> selected;
   selected.reserve(indices.size());
   std::ranges::transform(indices, std::back_inserter(selected),
-                         [&](uint32_t index) { return ids.at(index); });
+                         [&](uint32_t index) { return values.at(index); });
   return selected;
 }
 
 auto& ObservationBy(KeyframeId keyframe, auto& observations) {
-  const auto it =
-      std::find_if(observations.begin(), observations.end(),
-                   [&](const auto& observation) { return observation.keyframe == keyframe; });
+  const auto it = std::ranges::find_if(
+      observations, [&](const auto& observation) { return observation.keyframe == keyframe; });
   Check(it != observations.end(), "an observation that only the keyframe knows");
   return *it;
 }
@@ -78,19 +77,13 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
   reduced->depth_delay = frame.depth_delay;
   reduced->features = SelectKeypoints(frame.features, keypoints);
   if (const std::vector<WordId>& words = frame.words.get(); !words.empty()) {
-    std::vector<WordId> kept;
-    for (const uint32_t keypoint : keypoints) {
-      kept.push_back(words.at(keypoint));
-    }
-    reduced->words = std::move(kept);
+    reduced->words = Select(words, keypoints);
   }
   if (frame.shutter != nullptr) {
     auto shutter = std::make_shared<ShutterMotion>();
     shutter->velocity = frame.shutter->velocity;
-    for (const uint32_t keypoint : keypoints) {
-      shutter->inverse_depths.push_back(frame.shutter->inverse_depths.at(keypoint));
-      shutter->depths.push_back(frame.shutter->depths.at(keypoint));
-    }
+    shutter->inverse_depths = Select(frame.shutter->inverse_depths, keypoints);
+    shutter->depths = Select(frame.shutter->depths, keypoints);
     reduced->shutter = std::move(shutter);
   }
   reduced->detections.reserve(detections.size());

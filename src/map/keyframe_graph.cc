@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
+#include <cstdint>
 
 namespace hullslam {
 namespace {
@@ -85,37 +85,12 @@ namespace {
 
 constexpr int kMinShared = 15;  // Mur-Artal and Tardos 2015, section III.D
 
-bool Before(const Covisible& edge, KeyframeId id) { return edge.keyframe < id; }
-
 void SetEdge(Keyframe& keyframe, KeyframeId other, int shared) {
-  auto it = std::lower_bound(keyframe.covisible.begin(), keyframe.covisible.end(), other, Before);
+  auto it = std::ranges::lower_bound(keyframe.covisible, other, {}, &Covisible::keyframe);
   if (it == keyframe.covisible.end() || it->keyframe != other) {
     it = keyframe.covisible.insert(it, {other, 0});
   }
   it->shared = shared;
-}
-
-void RemoveEdge(Keyframe& keyframe, KeyframeId other) {
-  const auto it =
-      std::lower_bound(keyframe.covisible.begin(), keyframe.covisible.end(), other, Before);
-  if (it != keyframe.covisible.end() && it->keyframe == other) {
-    keyframe.covisible.erase(it);
-  }
-}
-
-std::map<KeyframeId, int> CountShared(const Map& map, KeyframeId id) {
-  std::map<KeyframeId, int> shared;
-  for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
-    if (!landmark.IsValid()) {
-      continue;
-    }
-    for (const Observation& observation : map.landmarks().At(landmark).observations) {
-      if (observation.keyframe != id) {
-        ++shared[observation.keyframe];
-      }
-    }
-  }
-  return shared;
 }
 
 bool IsMoreShared(const Covisible& a, const Covisible& b) {
@@ -128,21 +103,24 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
   std::vector<Covisible> edges;
   Covisible best;
   Covisible best_older;
-  for (const auto& [other, shared] : CountShared(map, id)) {
-    const Covisible edge{other, shared};
-    if (shared >= kMinShared) {
+  for (const Covisible& edge : CountObservers(map, map.keyframes().At(id).landmarks)) {
+    if (edge.keyframe == id) {
+      continue;
+    }
+    if (edge.shared >= kMinShared) {
       edges.push_back(edge);
     }
     if (!best.keyframe.IsValid() || IsMoreShared(edge, best)) {
       best = edge;
     }
-    if (other < id && (!best_older.keyframe.IsValid() || IsMoreShared(edge, best_older))) {
+    if (edge.keyframe < id && (!best_older.keyframe.IsValid() || IsMoreShared(edge, best_older))) {
       best_older = edge;
     }
   }
   if (edges.empty() && best.keyframe.IsValid()) {
     edges.push_back(best);
   }
+  std::ranges::sort(edges, {}, &Covisible::keyframe);
   DetachCovisibility(map, id);
   for (const Covisible& edge : edges) {
     SetEdge(map.MutableKeyframe(edge.keyframe), id, edge.shared);
@@ -159,7 +137,8 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
 void DetachCovisibility(Map& map, KeyframeId id) {
   const std::vector<Covisible> edges = map.keyframes().At(id).covisible;
   for (const Covisible& edge : edges) {
-    RemoveEdge(map.MutableKeyframe(edge.keyframe), id);
+    std::erase_if(map.MutableKeyframe(edge.keyframe).covisible,
+                  [&](const Covisible& other) { return other.keyframe == id; });
   }
   map.MutableKeyframe(id).covisible.clear();
 }
@@ -174,6 +153,27 @@ std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count) {
     best.push_back(edges[i].keyframe);
   }
   return best;
+}
+
+std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId> landmarks) {
+  IdMap<KeyframeId, int> votes;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* landmark = map.landmarks().Find(id);
+    if (landmark == nullptr) {
+      continue;
+    }
+    for (const Observation& observation : landmark->observations) {
+      ++votes[observation.keyframe];
+    }
+  }
+  std::vector<Covisible> observers;
+  for (const auto& [id, shared] : votes.entries()) {
+    observers.push_back({id, shared});
+  }
+  std::sort(observers.begin(), observers.end(), [](const Covisible& a, const Covisible& b) {
+    return a.shared != b.shared ? a.shared > b.shared : a.keyframe < b.keyframe;
+  });
+  return observers;
 }
 
 std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes) {

@@ -35,6 +35,10 @@ void DetachCovisibility(Map& map, KeyframeId keyframe);
 // id.
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count);
 
+// The keyframes that observe any of the landmarks, which need not exist, with the number that each
+// of them observes: by decreasing number, then by increasing id.
+std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId> landmarks);
+
 // The landmarks that any of the keyframes observes, by increasing id.
 std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes);
 

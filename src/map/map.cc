@@ -12,9 +12,8 @@ namespace {
 
 // The position of the observation by `keyframe`, or where it would be inserted.
 auto LowerBoundOfObservation(auto& observations, KeyframeId keyframe) {
-  return std::lower_bound(
-      observations.begin(), observations.end(), keyframe,
-      [](const auto& observation, KeyframeId id) { return observation.keyframe < id; });
+  return std::ranges::lower_bound(observations, keyframe, {},
+                                  [](const auto& observation) { return observation.keyframe; });
 }
 
 auto FindObservation(auto& observations, KeyframeId keyframe) {
@@ -29,12 +28,23 @@ void InsertLoop(Keyframe& keyframe, KeyframeId other) {
   }
 }
 
-// Moves the loop edges of `id` to its parent.
+// Moves each loop edge of `id` to the keyframe that is nearest to the other end, of the parent of
+// `id` and those that are covisible with it. The parents of parents could be far away.
 void HandOverLoops(Map& map, KeyframeId id, const Keyframe& keyframe) {
   for (const KeyframeId other : keyframe.loops) {
     std::erase(map.MutableKeyframe(other).loops, id);
-    if (other != keyframe.parent) {
-      map.AddLoop(keyframe.parent, other);
+    const Eigen::Vector3d end = Inverse(map.CamFromWorld(other)).translation;
+    const auto distance = [&](KeyframeId heir) {
+      return (Inverse(map.CamFromWorld(heir)).translation - end).norm();
+    };
+    KeyframeId heir = keyframe.parent;
+    for (const Covisible& near : keyframe.covisible) {
+      if (near.keyframe != other && (heir == other || distance(near.keyframe) < distance(heir))) {
+        heir = near.keyframe;
+      }
+    }
+    if (heir != other) {
+      map.AddLoop(heir, other);
     }
   }
 }

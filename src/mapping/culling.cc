@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "frame/measure_point.h"
 #include "map/compaction.h"
@@ -18,7 +19,7 @@
 #include "mapping/sensor_rules.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/resolved_observation.h"
-#include "util/id_set.h"
+#include "places/similar_places.h"
 
 namespace hullslam {
 namespace {
@@ -41,19 +42,6 @@ constexpr int kMostAtOnce = 2;  // a map far beyond its bound shrinks while it i
 // Over the bound, half of the landmarks of a keyframe that goes are held by enough others.
 constexpr double kLeastShareOverBound = 0.5;
 
-// The keyframe, those that are covisible with it, and those that are covisible with one of them.
-IdSet<KeyframeId> NearKeyframes(const Map& map, KeyframeId id) {
-  IdSet<KeyframeId> near;
-  near.Insert(id);
-  for (const Covisible& neighbour : map.keyframes().At(id).covisible) {
-    near.Insert(neighbour.keyframe);
-    for (const Covisible& second : map.keyframes().At(neighbour.keyframe).covisible) {
-      near.Insert(second.keyframe);
-    }
-  }
-  return near;
-}
-
 }  // namespace
 
 size_t EraseContradictedLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
@@ -62,12 +50,8 @@ size_t EraseContradictedLandmarks(Map& map, KeyframeId current, const Sensor& se
   if (keyframe.frame->depth.empty()) {
     return 0;
   }
-  std::vector<KeyframeId> neighbours;
-  for (const Covisible& neighbour : keyframe.covisible) {
-    neighbours.push_back(neighbour.keyframe);
-  }
-  std::vector<LandmarkId> contradicted;
-  for (const LandmarkId id : ObservedLandmarks(map, neighbours)) {
+  size_t erased = 0;
+  for (const LandmarkId id : ObservedLandmarks(map, KeyframesAround(map, current))) {
     const Landmark& landmark = map.landmarks().At(id);
     const FrameId last_seen = FrameIdOf(map, LastObserver(map, landmark.observations));
     if (last_seen >= keyframe.frame->id) {
@@ -77,19 +61,25 @@ size_t EraseContradictedLandmarks(Map& map, KeyframeId current, const Sensor& se
     if (sight == Sight::kSurface) {
       contradictions.Forget(id);
     } else if (sight == Sight::kPast && contradictions.Add(id, last_seen) == kContradictions) {
-      contradicted.push_back(id);
+      contradictions.Forget(id);
+      map.EraseLandmark(id);
+      ++erased;
     }
   }
-  for (const LandmarkId id : contradicted) {
-    contradictions.Forget(id);
-    map.EraseLandmark(id);
-  }
-  return contradicted.size();
+  return erased;
 }
 
 namespace {
 
 constexpr double kMinFoundRatio = 0.25;
+constexpr double kBetweenVisits = 60.0;  // s
+constexpr double kMistaken = 0.1;        // share of frames in which others are taken for a landmark
+constexpr int kMissedVisits = 3;
+constexpr int kPatience = 8;             // visits for each one in which it was found
+constexpr int kMostVisits = 50;          // that count
+constexpr int kAppearances = 2;          // of a place
+constexpr double kSamePoint = 9.0;       // px^2 at level 0
+constexpr double kSameDepth = 0.1;       // share; other things hide it
 constexpr uint32_t kTrialKeyframes = 2;  // at this age landmarks of small weight are erased
 constexpr double kRedundantShare = 0.9;
 // Two keyframes see a landmark from the same viewpoint if its parallax between them is smaller than
@@ -180,15 +170,10 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const Cull
          (has_many_close || all.MostAreRedundant());
 }
 
-int CountShared(const Keyframe& a, const Keyframe& b) {
-  IdSet<LandmarkId> of_a;
-  for (const LandmarkId id : a.landmarks) {
-    if (id.IsValid()) {
-      of_a.Insert(id);
-    }
-  }
-  return static_cast<int>(std::count_if(b.landmarks.begin(), b.landmarks.end(), [&](LandmarkId id) {
-    return id.IsValid() && of_a.Contains(id);
+int CountShared(const Map& map, const Keyframe& a, KeyframeId b) {
+  return static_cast<int>(std::ranges::count_if(a.landmarks, [&](LandmarkId id) {
+    return id.IsValid() && std::ranges::binary_search(map.landmarks().At(id).observations, b, {},
+                                                      &Observation::keyframe);
   }));
 }
 
@@ -201,8 +186,9 @@ bool JoinsItsNeighbours(const Map& map, KeyframeId id, int min_shared) {
   if (before == nullptr || after == nullptr) {
     return false;
   }
-  const int weakest = std::min(CountShared(*before, keyframe), CountShared(keyframe, *after));
-  return CountShared(*before, *after) < std::min(weakest, min_shared);
+  const int weakest = std::min(CountShared(map, *before, id), CountShared(map, *after, id));
+  return CountShared(map, *before, *map.KeyframeOfFrame(after->frame->id)) <
+         std::min(weakest, min_shared);
 }
 
 // The centre of the object. Null for a candidate without shape and depth, whose location is not
@@ -224,7 +210,7 @@ bool IsNewDirection(const Map& map, KeyframeId id, const ObjectLandmark& object)
     return false;
   }
   const Eigen::Vector3d ray = RayTo(map.CamFromWorld(id), *center);
-  return std::none_of(views.begin(), views.end(), [&](const ResolvedObservation& view) {
+  return std::ranges::none_of(views, [&](const ResolvedObservation& view) {
     return view.keyframe != id && RayTo(view.cam_from_world, *center).dot(ray) >= kMaxSimilarCos;
   });
 }
@@ -265,12 +251,67 @@ void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
   });
 }
 
+void LandmarkVisits::Add(const Map& map, const std::vector<Sighting>& sightings, double time) {
+  for (const Sighting& sighting : sightings) {
+    const LandmarkId id = map.Resolve(sighting.landmark);
+    if (!id.IsValid() || sighting.visible == 0) {
+      continue;
+    }
+    Counts& counts = counts_[id];
+    counts.missed += begin_ - counts.last > kBetweenVisits ? 1 : 0;
+    counts.last = time;
+    if (counts.missed > 0 && sighting.found > kMistaken * sighting.visible) {
+      ++counts.found;
+      counts.missed = 0;
+    }
+  }
+  begin_ = time;
+  if (counts_.entries().size() > 2 * map.landmarks().size()) {
+    for (const auto& [id, counts] : counts_.Take()) {
+      if (map.landmarks().Contains(id)) {
+        counts_[id] = counts;
+      }
+    }
+  }
+}
+
+size_t EraseForgottenLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
+                               const LandmarkVisits& visits) {
+  std::vector<std::pair<LandmarkId, LandmarkProjection>> expected;
+  for (const LandmarkId id : ObservedLandmarks(map, KeyframesAround(map, current))) {
+    const Landmark& landmark = map.landmarks().At(id);
+    if (const auto view = ProjectLandmark(sensor, map.CamFromWorld(current), landmark)) {
+      expected.emplace_back(id, *view);
+    }
+  }
+  size_t forgotten = 0;
+  for (const auto& [id, view] : expected) {
+    const LandmarkVisits::Counts counts = visits.Of(id);
+    const auto sigma2 = static_cast<double>(sensor.levels.sigma2[static_cast<size_t>(view.level)]);
+    const auto replaces = [&, view = view](const auto& other) {
+      const LandmarkVisits::Counts of_other = visits.Of(other.first);
+      const double depths = other.second.point_in_cam.z() / view.point_in_cam.z();
+      return of_other.missed < counts.missed && of_other.found > 1 &&
+             std::abs(depths - 1.0) < kSameDepth &&
+             std::abs(other.second.level - view.level) <= 1 &&
+             (other.second.pixel - view.pixel).squaredNorm() < kSamePoint * sigma2;
+    };
+    if (counts.missed >= kMissedVisits &&
+        (counts.missed >= kPatience * std::min(counts.found + 1, kMostVisits) ||
+         std::ranges::count_if(expected, replaces) >= kAppearances)) {
+      map.EraseLandmark(id);
+      ++forgotten;
+    }
+  }
+  return forgotten;
+}
+
 std::vector<LandmarkId> FindRecentLandmarks(const Map& map) {
   std::vector<LandmarkId> recent;
   const KeyframeId newest(map.keyframes().NextId().value - 1);
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    const uint32_t age = AgeOf(map, landmark.created_by, newest, kTrialKeyframes + 1);
-    if (age <= kTrialKeyframes) {  // at the next keyframe it is one more
+    // At the next keyframe it is one more.
+    if (AgeOf(map, landmark.created_by, newest, kTrialKeyframes + 1) <= kTrialKeyframes) {
       recent.push_back(id);
     }
   });
@@ -326,7 +367,7 @@ int CullOverBound(Map& map, KeyframeId current, const Sensor& sensor, size_t min
 }
 
 void CompactOldKeyframes(Map& map, KeyframeId current, std::vector<KeyframeId>& full) {
-  const IdSet<KeyframeId> near = NearKeyframes(map, current);
+  const IdSet<KeyframeId> near = ConnectedTo(map, current);
   std::erase_if(full, [&](KeyframeId id) {
     if (!map.keyframes().Contains(id)) {
       return true;

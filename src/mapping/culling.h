@@ -6,8 +6,10 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
 #include "hullslam/mapping/mapping_options.h"
 #include "map/contradictions.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 
@@ -29,6 +31,37 @@ size_t EraseContradictedLandmarks(Map& map, KeyframeId current, const Sensor& se
 // of `current` leave it too, because the camera was lost before it could see them again.
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
                          std::vector<LandmarkId>& recent);
+
+// Counts for landmarks the visits in which the camera found them, and those in which it should have
+// seen them but did not. Visits to a landmark are separate if the camera was elsewhere for a
+// minute, so a thing that hides it for an hour, or an hour in the dark, is one visit.
+class LandmarkVisits {
+ public:
+  struct Counts {
+    double last = -1e9;  // s, the end of the last message with the landmark
+    int found = 0;
+    int missed = 0;  // since it was found
+  };
+
+  // Adds the sightings since the last call, up to a time (s).
+  void Add(const Map& map, const std::vector<Sighting>& sightings, double time);
+  // Zeros for a landmark that was never counted.
+  Counts Of(LandmarkId landmark) const {
+    const Counts* const counts = counts_.Find(landmark);
+    return counts != nullptr ? *counts : Counts();
+  }
+
+ private:
+  IdMap<LandmarkId, Counts> counts_;
+  double begin_ = 0.0;  // of the next sightings, s
+};
+
+// Removes landmarks that the keyframe `current` should show if they were missed in eight visits for
+// each one in which they were found before (fifty at most), and eight more. Those that were missed
+// in three visits also go if two others were found since then at the same place and scale: a place
+// looks different by day and by lamp, but keeps no third appearance. Returns how many were removed.
+size_t EraseForgottenLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
+                               const LandmarkVisits& visits);
 
 // The landmarks of a map of an earlier session that CullRecentLandmarks has to check, by increasing
 // id: those that were not three keyframes old at its end.

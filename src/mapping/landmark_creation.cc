@@ -267,7 +267,7 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
   std::vector<Eigen::Vector3d> points_in_cam;
   for (const LandmarkId id : landmarks) {
     const Landmark* landmark = map.landmarks().Find(id);
-    if (landmark == nullptr || std::binary_search(known.begin(), known.end(), id)) {
+    if (landmark == nullptr || std::ranges::binary_search(known, id)) {
       continue;
     }
     const auto view = ProjectLandmark(sensor, map.keyframes().At(target).cam_from_world, *landmark);

@@ -101,6 +101,7 @@ bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   {
     const ScopedTimer timer(times_, "map_insert");
     BeginSession();
+    visits_.Add(map_, request.sightings, request.frame->timestamp);
     keyframe = InsertKeyframe(map_, request, SensorNow(), recent_, options_.landmark_rule);
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
@@ -199,6 +200,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
       FuseLandmarks(map_, keyframe, SensorNow());
     }
     contradicted_landmarks_ += EraseContradictedLandmarks(map_, keyframe, sensor_, contradictions_);
+    EraseForgottenLandmarks(map_, keyframe, sensor_, visits_);
   }
   MapObjects(keyframe);
 }

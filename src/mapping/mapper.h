@@ -17,6 +17,7 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 #include "map/contradictions.h"
+#include "mapping/culling.h"
 #include "objects/object_mapper.h"
 #include "objects/request_memory.h"
 #include "optim/bundle_result.h"
@@ -129,6 +130,7 @@ class Mapper {
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
   Contradictions<LandmarkId> contradictions_;
+  LandmarkVisits visits_;
   size_t contradicted_landmarks_ = 0;
   size_t sized_keyframes_ = 0;  // views of objects of known size when the scale was last measured
   std::atomic<bool> awaits_masks_ = false;

@@ -2,7 +2,6 @@
 #include "optim/bundle_window.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "map/islands.h"
@@ -15,25 +14,14 @@ namespace {
 // those with most observations first.
 std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
                                        const std::vector<KeyframeId>& inside, size_t count) {
-  std::map<KeyframeId, int> shared;
-  for (const LandmarkId landmark : landmarks) {
-    for (const Observation& observation : map.landmarks().At(landmark).observations) {
-      ++shared[observation.keyframe];
-    }
-  }
-  std::vector<Covisible> outer;
-  for (const auto& [id, observations] : shared) {
-    if (!std::binary_search(inside.begin(), inside.end(), id)) {
-      outer.push_back({id, observations});
-    }
-  }
-  std::stable_sort(outer.begin(), outer.end(),
-                   [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
+  std::vector<Covisible> outer = CountObservers(map, landmarks);
+  std::erase_if(outer, [&](const Covisible& keyframe) {
+    return std::ranges::binary_search(inside, keyframe.keyframe);
+  });
   if (count > 0) {
     outer.resize(std::min(outer.size(), count));
   }
   std::vector<KeyframeId> ids;
-  ids.reserve(outer.size());
   for (const Covisible& keyframe : outer) {
     ids.push_back(keyframe.keyframe);
   }

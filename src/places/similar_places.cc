@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "map/keyframe_graph.h"
-#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -16,13 +15,10 @@ constexpr double kScoreShare = 0.75;
 // The sum of the scores of the keyframes in `similar` that belong to the place of `keyframe`.
 double PlaceScore(const Map& map, KeyframeId keyframe,
                   const std::vector<SimilarKeyframe>& similar) {
-  IdSet<KeyframeId> place;
-  for (const KeyframeId member : PlaceOf(map, keyframe)) {
-    place.Insert(member);
-  }
+  const std::vector<KeyframeId> place = PlaceOf(map, keyframe);
   double sum = 0.0;
   for (const SimilarKeyframe& one : similar) {
-    sum += place.Contains(one.keyframe) ? one.score : 0.0;
+    sum += std::ranges::binary_search(place, one.keyframe) ? one.score : 0.0;
   }
   return sum;
 }
@@ -32,8 +28,29 @@ double PlaceScore(const Map& map, KeyframeId keyframe,
 std::vector<KeyframeId> PlaceOf(const Map& map, KeyframeId keyframe) {
   std::vector<KeyframeId> place = BestCovisible(map.keyframes().At(keyframe), kNeighbours);
   place.push_back(keyframe);
-  std::sort(place.begin(), place.end());
+  std::ranges::sort(place);
   return place;
+}
+
+std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe) {
+  std::vector<KeyframeId> around{keyframe};
+  for (const Covisible& other : map.keyframes().At(keyframe).covisible) {
+    around.push_back(other.keyframe);
+  }
+  std::sort(around.begin(), around.end());
+  return around;
+}
+
+IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
+  IdSet<KeyframeId> connected;
+  connected.Insert(keyframe);
+  for (const Covisible& first : map.keyframes().At(keyframe).covisible) {
+    connected.Insert(first.keyframe);
+    for (const Covisible& second : map.keyframes().At(first.keyframe).covisible) {
+      connected.Insert(second.keyframe);
+    }
+  }
+  return connected;
 }
 
 void KeepMostCommon(std::vector<SimilarKeyframe>& similar) {
@@ -41,8 +58,7 @@ void KeepMostCommon(std::vector<SimilarKeyframe>& similar) {
   for (const SimilarKeyframe& one : similar) {
     most = std::max(most, one.common_words);
   }
-  std::erase_if(similar,
-                [&](const SimilarKeyframe& one) { return one.common_words < kCommonShare * most; });
+  std::erase_if(similar, [&](const auto& one) { return one.common_words < kCommonShare * most; });
 }
 
 std::vector<KeyframeId> BestOfPlaces(const Map& map, const std::vector<SimilarKeyframe>& similar) {
@@ -60,9 +76,7 @@ std::vector<KeyframeId> BestOfPlaces(const Map& map, const std::vector<SimilarKe
       continue;
     }
     chosen.push_back(keyframe);
-    for (const KeyframeId member : PlaceOf(map, keyframe)) {
-      covered.Insert(member);
-    }
+    std::ranges::for_each(PlaceOf(map, keyframe), [&](KeyframeId id) { covered.Insert(id); });
   }
   return chosen;
 }

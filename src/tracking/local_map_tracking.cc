@@ -20,28 +20,6 @@ namespace {
 
 constexpr size_t kNeighbours = 10;
 
-// The keyframes that observe any of the given landmarks, those that observe most first.
-std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId> landmarks) {
-  IdMap<KeyframeId, int> votes;
-  for (const LandmarkId id : landmarks) {
-    const Landmark* landmark = map.landmarks().Find(id);
-    if (landmark == nullptr) {
-      continue;
-    }
-    for (const Observation& observation : landmark->observations) {
-      ++votes[observation.keyframe];
-    }
-  }
-  std::vector<Covisible> observers;
-  for (const auto& [id, shared] : votes.entries()) {
-    observers.push_back({id, shared});
-  }
-  std::sort(observers.begin(), observers.end(), [](const Covisible& a, const Covisible& b) {
-    return a.shared != b.shared ? a.shared > b.shared : a.keyframe < b.keyframe;
-  });
-  return observers;
-}
-
 // A set of keyframes that keeps the order in which they were added.
 class KeyframeSet {
  public:

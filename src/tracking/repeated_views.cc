@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/polygon.h"
 #include "map/islands.h"
 #include "objects/constraint/point_statistics.h"
 #include "objects/visibility.h"
@@ -77,7 +78,7 @@ bool ShowsTheSame(const View& view, const Keyframe& keyframe, const Rigid3& keyf
     return std::abs(std::log(other.norm() / point.norm())) < kMostZoom &&
            std::atan2(point.cross(other).norm(), point.dot(other)) < most_angle;
   };
-  const auto near = std::count_if(view.points.begin(), view.points.end(), is_near);
+  const auto near = std::ranges::count_if(view.points, is_near);
   if (2 * static_cast<size_t>(near) <= view.points.size()) {
     return false;
   }
@@ -137,12 +138,6 @@ constexpr int kMostChangeRequests = 8;
 constexpr double kPlaceMemory = 1800.0;  // s; then a place may ask again
 constexpr double kLeastOverlap = 0.4;    // intersection over union of the boxes in two frames
 
-double Overlap(const Eigen::AlignedBox2d& a, const Eigen::AlignedBox2d& b) {
-  const Eigen::AlignedBox2d both = a.intersection(b);
-  const double area = both.isEmpty() ? 0.0 : both.volume();
-  return area / (a.volume() + b.volume() - area);
-}
-
 // Where a detection is: the mean of its depth points, or at the median depth of the landmarks.
 Eigen::Vector3d PositionOf(const Detection& detection, const Map& map, const Sensor& sensor,
                            const PoseEstimate& estimate) {
@@ -199,9 +194,9 @@ bool IsKnownView(const Map& map, const Sensor& sensor, const Frame& frame, Frame
            ShowsTheSame(view, keyframe, keyframe.cam_from_world * world_from_cam, most_angle);
   };
   const std::vector<Covisible>& covisible = map.keyframes().At(reference).covisible;
-  return is_known(reference) ||
-         std::any_of(covisible.begin(), covisible.end(),
-                     [&](const Covisible& other) { return is_known(other.keyframe); });
+  return is_known(reference) || std::ranges::any_of(covisible, [&](const Covisible& other) {
+           return is_known(other.keyframe);
+         });
 }
 
 bool IsWellMapped(const Map& map, const Sensor& sensor, const Frame& frame,
@@ -280,7 +275,7 @@ int LastingChanges::Follow(const Frame& frame, const Map& map, const TrackingCon
 void LastingChanges::Note(const Change& change) {
   const auto known = std::ranges::find_if(changes_, [&](const Change& other) {
     return other.missed > 0 && other.gone == change.gone && other.label == change.label &&
-           (change.gone.IsValid() || Overlap(other.box, change.box) >= kLeastOverlap);
+           (change.gone.IsValid() || IntersectionOverUnion(other.box, change.box) >= kLeastOverlap);
   });
   const int seen = known != changes_.end() ? known->seen : 0;
   Change& noted = known != changes_.end() ? *known : changes_.emplace_back();

@@ -13,6 +13,7 @@
 #include "map/islands.h"
 #include "map/made_map.h"
 #include "map_files/invariants.h"
+#include "places/similar_places.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

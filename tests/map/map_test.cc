@@ -306,7 +306,7 @@ TEST_F(CulledKeyframes, AreFoundByFindCulled) {
   EXPECT_EQ(map_.FindCulled(Id(9)), nullptr);
 }
 
-TEST_F(CulledKeyframes, HandTheirLoopEdgesToTheirParent) {
+TEST_F(CulledKeyframes, HandTheirLoopEdgesOver) {
   map_.AddLoop(Id(3), Id(0));
   map_.AddLoop(Id(3), Id(1));
   map_.CullKeyframe(Id(3));  // its parent is 2
@@ -319,6 +319,28 @@ TEST_F(CulledKeyframes, HandTheirLoopEdgesToTheirParent) {
   EXPECT_EQ(map_.keyframes().At(Id(0)).loops, std::vector<KeyframeId>{Id(1)});
   map_.CullKeyframe(Id(1));
   EXPECT_TRUE(map_.keyframes().At(Id(0)).loops.empty());
+}
+
+// Parents of parents could be far from where the loop was closed.
+TEST(CulledKeyframesInARow, HandALoopEdgeToTheNeighbourThatIsNearestToItsOtherEnd) {
+  Map map;
+  for (int i = 0; i < 5; ++i) {  // at i metres
+    const KeyframeId id =
+        AddKeyframe(map, 60, 0, {Eigen::Quaterniond::Identity(), {-1.0 * i, 0.0, 0.0}});
+    if (i > 0) {
+      Share(map, {KeyframeId(id.value - 1), id}, 20);
+      UpdateCovisibility(map, id);
+    }
+  }
+  const KeyframeId back =
+      AddKeyframe(map, 60, 0, {Eigen::Quaterniond::Identity(), {-2.1, 0.0, 0.0}});
+  SetParent(map, back, KeyframeId(4));
+  map.AddLoop(KeyframeId(2), back);
+  ASSERT_EQ(map.keyframes().At(KeyframeId(2)).parent, KeyframeId(1));
+  map.CullKeyframe(KeyframeId(2));
+  EXPECT_EQ(map.keyframes().At(back).loops, std::vector<KeyframeId>{KeyframeId(3)});
+  EXPECT_EQ(map.keyframes().At(KeyframeId(3)).loops, std::vector<KeyframeId>{back});
+  EXPECT_TRUE(map.keyframes().At(KeyframeId(1)).loops.empty());
 }
 
 TEST(Map, ALoopEdgeIsAddedOnceAtBothEnds) {

@@ -305,6 +305,110 @@ TEST_F(RecentLandmarksTest, AreNoOlderAfterAKeyframeOfAnEarlierFrame) {
   ExpectCulled(of_late, 10, "two keyframes later");
 }
 
+// A camera comes back to one view every two minutes. A keyframe shows what is at five points there,
+// by one landmark for each light in which the points look different.
+class ForgottenLandmarks : public testing::Test {
+ protected:
+  static constexpr size_t kPoints = 5;
+  using Look = std::vector<LandmarkId>;
+
+  ForgottenLandmarks() { keyframe_ = map_.AddKeyframe(MakeFrame(0, 100, 100), Rigid3()); }
+
+  // Landmarks of the points as they look in a new light, or of a thing in front of them.
+  Look AddLook(double depth = 2.0) {
+    Look look;
+    for (size_t i = 0; i < kPoints; ++i) {
+      const Eigen::Vector3d ray(0.1 * static_cast<double>(i), 0.0, 1.0 + 1e-4 * keypoint_);
+      const Eigen::Vector3d position = depth * ray;
+      look.push_back(map_.AddLandmark(position, keyframe_));
+      EXPECT_TRUE(map_.AddObservation(look.back(), keyframe_, keypoint_++));
+      UpdateViewingGeometry(map_, look.back(), sensor_.levels);
+    }
+    return look;
+  }
+
+  // Visits in which `seen` is found in a share of the 100 frames and the other landmarks in none.
+  // Returns how many landmarks are removed.
+  size_t Visit(int times, const Look& seen, int found = 100) {
+    size_t removed = 0;
+    for (int i = 0; i < times; ++i) {
+      visits_.Add(map_, {}, time_ += 110.0);  // elsewhere
+      removed += GoOn(seen, found);
+    }
+    return removed;
+  }
+  // Ten seconds more of the same visit.
+  size_t GoOn(const Look& seen, int found = 100) {
+    std::vector<Sighting> sightings;
+    map_.landmarks().ForEach([&](LandmarkId id, const Landmark&) {
+      sightings.push_back({id, 100, std::ranges::count(seen, id) > 0 ? found : 0});
+    });
+    visits_.Add(map_, sightings, time_ += 10.0);
+    const size_t removed = EraseForgottenLandmarks(map_, keyframe_, sensor_, visits_);
+    EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+    return removed;
+  }
+  bool AreThere(const Look& look) const {
+    return std::ranges::all_of(look, [&](LandmarkId id) { return map_.landmarks().Contains(id); });
+  }
+
+  const Sensor sensor_ = SyntheticSensor();
+  Map map_;
+  LandmarkVisits visits_;
+  KeyframeId keyframe_;
+  uint32_t keypoint_ = 0;
+  double time_ = 0.0;
+};
+
+TEST_F(ForgottenLandmarks, OfThreeLightsTheTwoSeenLastStay) {
+  const Look day = AddLook();
+  EXPECT_EQ(Visit(6, day), 0U);
+  const Look lamp = AddLook();
+  EXPECT_EQ(Visit(6, lamp), 0U);
+  EXPECT_EQ(Visit(6, day), 0U) << "the same by day and by lamp";
+  EXPECT_EQ(Visit(6, lamp), 0U);
+  EXPECT_EQ(Visit(6, day), 0U);
+  const Look sunset = AddLook();
+  EXPECT_EQ(Visit(6, sunset), kPoints);
+  EXPECT_FALSE(AreThere(lamp)) << "seen longest ago";
+  EXPECT_TRUE(AreThere(day));
+  EXPECT_TRUE(AreThere(sunset));
+}
+
+TEST_F(ForgottenLandmarks, AreNotThoseThatOneLongVisitHides) {
+  const Look look = AddLook();
+  Visit(1, look);
+  Visit(1, {});
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_EQ(GoOn({}), 0U);
+  }
+  EXPECT_EQ(Visit(5, {}), 0U) << "nor those that are hidden a few times";
+  EXPECT_EQ(Visit(3, AddLook(1.5)), 0U) << "by one thing after the other";
+  EXPECT_EQ(Visit(3, AddLook(1.5)), 0U);
+  EXPECT_TRUE(AreThere(look));
+}
+
+TEST_F(ForgottenLandmarks, WereMissedInEightVisitsForEachThatFoundThem) {
+  const Look once = AddLook();
+  Visit(1, once);
+  const Look often = AddLook();
+  EXPECT_EQ(Visit(15, often), 0U);
+  EXPECT_EQ(Visit(1, often), kPoints);
+  EXPECT_FALSE(AreThere(once));
+  EXPECT_EQ(Visit(16 * 8 + 7, often, 5), 0U) << "so few frames are a mistake";
+  EXPECT_TRUE(AreThere(often));
+  EXPECT_EQ(Visit(1, often, 5), kPoints);
+}
+
+TEST_F(ForgottenLandmarks, AreNotThoseThatAreOutOfView) {
+  const Look look = AddLook();
+  map_.SetPose(keyframe_, {Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0), Eigen::Vector3d::Zero()});
+  EXPECT_EQ(Visit(100, {}), 0U);
+  map_.SetPose(keyframe_, Rigid3());
+  EXPECT_EQ(Visit(1, {}), kPoints);
+  EXPECT_FALSE(AreThere(look));
+}
+
 constexpr size_t kMinObjectViews = 3;
 
 int Cull(Map& map, KeyframeId current, const Sensor& sensor) {

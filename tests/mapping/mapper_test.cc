@@ -181,6 +181,45 @@ TEST_P(MapperWith, RemovesAndCountsTheLandmarksOfThingsThatHaveGone) {
   EXPECT_GT(landmark_of_point_.size(), 100U) << "what is still there stays";
 }
 
+// Points from number `left` on are never found again, and no depth image tells why.
+TEST_F(MapperTest, ForgetsTheLandmarksThatManyVisitsMiss) {
+  for (uint32_t index = 0; index <= 20; index += 5) {
+    ProcessFrame(index);
+  }
+  constexpr uint32_t kLeft = 200;
+  const auto missing = [&] {
+    return std::ranges::count_if(landmark_of_point_,
+                                 [](const auto& entry) { return entry.first >= kLeft; });
+  };
+  const auto before = missing();
+  ASSERT_GT(before, 100);
+  const SyntheticWorld emptied({.points = kLeft, .pixel_noise = 0.1});
+  for (uint32_t i = 0; i < 40; ++i) {
+    const SyntheticView view = emptied.Observe(25 + i);
+    auto frame = std::make_shared<Frame>(*view.frame);
+    frame->timestamp = 1000.0 + 100.0 * i;
+    KeyframeRequest request = Request(25 + i, *mapper_->NewestKeyframe());
+    request.frame = std::move(frame);
+    request.landmarks.clear();
+    for (const uint32_t point : view.points) {
+      const auto known = landmark_of_point_.find(point);
+      request.landmarks.push_back(known != landmark_of_point_.end() ? known->second : LandmarkId());
+    }
+    request.sightings.clear();
+    for (const auto& [point, landmark] : landmark_of_point_) {
+      if (i % 2 == 1) {  // in between, the camera is elsewhere
+        request.sightings.push_back({landmark, 50, point < kLeft ? 50 : 0});
+      }
+    }
+    Process(request);
+    if (i == 19) {
+      EXPECT_GT(missing(), before / 2) << "ten visits are not enough";
+    }
+  }
+  EXPECT_LT(missing(), before / 4) << "of " << before;
+  EXPECT_GT(landmark_of_point_.size(), 100U) << "what is still there stays";
+}
+
 TEST_P(MapperWith, BundleAdjustmentCorrectsAWrongPose) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);

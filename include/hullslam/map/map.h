@@ -126,8 +126,8 @@ class Map {
   void AddLoop(KeyframeId a, KeyframeId b);
 
   // Removes a keyframe from the map and from the index. It must have a parent. Its children get new
-  // parents (see DetachFromTree). Its loop edges become edges of its parent: without them a later
-  // pose graph could open the loops again, and the parent is near enough to close them.
+  // parents (see DetachFromTree). Its loop edges become edges of its parent or a covisible
+  // keyframe, the one nearest to the other end, so that no later pose graph opens the loops again.
   void CullKeyframe(KeyframeId keyframe);
   // The record of a culled keyframe; null if the keyframe is not culled.
   const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
