@@ -241,23 +241,30 @@ MapSaver::MapSaver(const fs::path& path, const MapSettings& settings, double sec
     : seconds_(seconds),
       saved_(std::chrono::steady_clock::now()),
       worker_(std::make_unique<LatestWorker<std::shared_ptr<const Map>>>(
-          [path, settings, on_failure = std::move(on_failure)](std::shared_ptr<const Map> map) {
+          [path, settings, on_failure = std::move(on_failure),
+           told = std::string()](std::shared_ptr<const Map> map) mutable {
+            std::string reason;
             try {
               WriteMap(path, *map, settings);
             } catch (const std::exception& error) {  // the run goes on
-              on_failure(error.what());
+              reason = error.what();
+            }
+            if (std::exchange(told, reason) != reason && !reason.empty()) {
+              on_failure(reason + "; the run goes on, and an earlier map there is kept");
             }
           })) {}
 
 MapSaver::~MapSaver() = default;
 
-void MapSaver::Offer(const std::shared_ptr<const Map>& map) {
+bool MapSaver::Offer(const std::shared_ptr<const Map>& map) {
   const auto now = std::chrono::steady_clock::now();
-  if (map != nullptr && !map->keyframes().empty() && !worker_->IsBusy() &&
-      std::chrono::duration<double>(now - saved_).count() >= seconds_) {
-    worker_->Post(map);
-    saved_ = now;
+  if (map == nullptr || map->keyframes().empty() || worker_->IsBusy() ||
+      std::chrono::duration<double>(now - saved_).count() < seconds_) {
+    return false;
   }
+  worker_->Post(map);
+  saved_ = now;
+  return true;
 }
 
 StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
