@@ -256,15 +256,13 @@ MapSaver::MapSaver(const fs::path& path, const MapSettings& settings, double sec
 
 MapSaver::~MapSaver() = default;
 
-bool MapSaver::Offer(const std::shared_ptr<const Map>& map) {
+void MapSaver::Offer(const std::shared_ptr<const Map>& map) {
   const auto now = std::chrono::steady_clock::now();
-  if (map == nullptr || map->keyframes().empty() || worker_->IsBusy() ||
-      std::chrono::duration<double>(now - saved_).count() < seconds_) {
-    return false;
+  if (map != nullptr && !map->keyframes().empty() && !worker_->IsBusy() &&
+      std::chrono::duration<double>(now - saved_).count() >= seconds_) {
+    worker_->Post(map);
+    saved_ = now;
   }
-  worker_->Post(map);
-  saved_ = now;
-  return true;
 }
 
 StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
