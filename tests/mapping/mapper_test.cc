@@ -8,8 +8,8 @@
 #include <ios>
 #include <map>
 #include <memory>
-#include <optional>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
