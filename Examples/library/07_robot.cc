@@ -6,6 +6,7 @@
 //   07_robot SEQUENCE ODOMETRY MAP
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hullslam/map_files/map_file.h"
@@ -36,9 +37,9 @@ void Run(const char* folder, const char* odometry, const char* map_file) {
       std::printf("%.3f s: %s\n", report.tracked.timestamp, ToString(event.kind).data());
     }
   });
-  hullslam::MapSaver saver(
-      map_file, hullslam::MapSettingsOf(settings), 5.0,
-      [](const std::string& why) { std::fprintf(stderr, "%s\n", why.c_str()); });
+  std::optional<hullslam::MapSaver> saver;
+  saver.emplace(map_file, hullslam::MapSettingsOf(settings), 5.0,
+                [](const std::string& why) { std::fprintf(stderr, "%s\n", why.c_str()); });
   const size_t half = sequence.frames.size() / 2;
   int by_wheels = 0;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -54,12 +55,13 @@ void Run(const char* folder, const char* odometry, const char* map_file) {
       slam.SetLocalizationOnly(true);  // the place is known now
     }
     by_wheels += slam.Track(frame).prior == hullslam::PriorUse::kAlone ? 1 : 0;
-    saver.Offer(slam.map());
+    saver->Offer(slam.map());
   }
   const hullslam::TrackedFrame last = slam.frames().back();
   std::printf("%d frames by wheels alone\n", by_wheels);
   PrintPose("odometry", last.odometry->odom_from_cam);
   PrintPose("map", last.odometry->map_from_odom * last.odometry->odom_from_cam);
+  saver.reset();  // waits until an earlier map is written, which would else replace the last one
   slam.Finish();
   hullslam::WriteMap(map_file, *slam.map(), hullslam::MapSettingsOf(settings));
 }

@@ -116,8 +116,12 @@ class LiveView::Engine {
   bool IsLocalisationWanted() const { return is_localising_; }
 
   void SetPhase(LivePhase phase) {
-    phase_ = phase;
+    {
+      const std::lock_guard lock(saving_);
+      phase_ = phase;
+    }
     is_control_changed_ = true;
+    saver_.WaitUntilIdle();
   }
 
   void End(std::shared_ptr<const Map> map, nlohmann::json summary) {
@@ -279,6 +283,10 @@ class LiveView::Engine {
     if (map == nullptr || map->keyframes().empty()) {
       return TextReply(409, "There is no map yet.");
     }
+    const std::lock_guard lock(saving_);
+    if (phase_ != LivePhase::kRunning) {
+      return TextReply(409, "The run is ending. It saves its map if it has --save-map.");
+    }
     if (saver_.IsBusy()) {
       return TextReply(409, "The map is being saved already.");
     }
@@ -304,6 +312,7 @@ class LiveView::Engine {
   LiveClock::time_point last_map_;
   LiveClock::time_point next_map_;
   LiveClock::time_point next_whole_;
+  std::mutex saving_;         // held when a map is given to the saver, and when the phase changes
   mutable std::mutex mutex_;  // guards the two members below
   std::string notice_;
   bool is_stopped_ = false;

@@ -71,7 +71,7 @@ class LiveView {
   // Whether a user wants the map to stay as it is.
   bool IsLocalisationWanted() const;
 
-  // All frames were tracked, and the map is being adjusted.
+  // All frames were tracked. Waits for a map that is being saved; no more are, until the run's own.
   void BeginFinishing();
   // The run has ended with this map (may be null) and this content of summary.json. Waits until the
   // browsers have got it, but not longer than two seconds. The pages keep what they show.

@@ -241,11 +241,16 @@ MapSaver::MapSaver(const fs::path& path, const MapSettings& settings, double sec
     : seconds_(seconds),
       saved_(std::chrono::steady_clock::now()),
       worker_(std::make_unique<LatestWorker<std::shared_ptr<const Map>>>(
-          [path, settings, on_failure = std::move(on_failure)](std::shared_ptr<const Map> map) {
+          [path, settings, on_failure = std::move(on_failure),
+           told = std::string()](std::shared_ptr<const Map> map) mutable {
+            std::string reason;
             try {
               WriteMap(path, *map, settings);
             } catch (const std::exception& error) {  // the run goes on
-              on_failure(error.what());
+              reason = error.what();
+            }
+            if (std::exchange(told, reason) != reason && !reason.empty()) {
+              on_failure(reason + "; the run goes on, and an earlier map there is kept");
             }
           })) {}
 

@@ -137,7 +137,7 @@ std::string SaveMap(const RunArguments& arguments, const SystemOptions& options,
   try {
     WriteMap(arguments.save_map, map, MapSettingsOf(options));
   } catch (const InputError& error) {
-    return fmt::format("{}; the map is lost, the other results were written", error.what());
+    return fmt::format("{}; an earlier map there and the other results are kept", error.what());
   }
   return {};
 }

@@ -120,7 +120,7 @@ void TrackFrames(const SlamRun& run, const std::optional<InitialisationFailure>&
                      &Interruption());
   size_t warnings = 0;
   MapSaver saver(run.arguments.save_map, MapSettingsOf(run.settings.options),
-                 run.arguments.checkpoint, PrintFailure);
+                 run.arguments.checkpoint, [](const std::string& why) { PrintWarnings({why}); });
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited = run.live.BeforeFrame(run.system, IsInterrupted, [&] {
@@ -318,8 +318,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
     throw InputError(*result.input_failure);
   }
   if (result.was_interrupted && result.given == 0) {
-    PrintFailure("the run was interrupted before the first frame; nothing was written");
-    return kFailed;
+    return FailIfAny({"the run was interrupted before the first frame; nothing was written"});
   }
   return FinishSlam(run, result);
 }

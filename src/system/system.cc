@@ -350,7 +350,11 @@ void System::CheckStamp(double timestamp) const {
   Check(std::isfinite(timestamp), "the time stamp is not a number");
   constexpr double kMost = 1e11;  // s; milliseconds since 1970 are more
   Check(std::abs(timestamp) <= kMost, "the time stamp is too large to be in seconds");
-  Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
+  const double last = frames_.empty() ? -2.0 * kMost : frames_.back().timestamp;
+  Check(timestamp > last,
+        fmt::format("the time stamp {:.6f} s does not come after that of the frame "
+                    "before, {:.6f} s; time stamps must increase",
+                    timestamp, last));
 }
 
 void System::CheckMotion(const Frame& frame) const {

@@ -138,6 +138,16 @@ TEST_F(LiveViewTest, TheMapIsSavedAndThePageSaysSo) {
   EXPECT_EQ(saved_, 3u);
 }
 
+TEST_F(LiveViewTest, NoEarlierMapReplacesThatOfTheEnd) {
+  ShowFrame(0);
+  EXPECT_EQ(Post("save-map", address_.token).find("HTTP/1.1 202"), 0u);
+  view_->BeginFinishing();
+  EXPECT_EQ(saved_, 3u) << "the map is written before the run writes its own";
+  const std::string refused = Post("save-map", address_.token);
+  EXPECT_EQ(refused.find("HTTP/1.1 409"), 0u);
+  EXPECT_NE(refused.find("The run is ending"), std::string::npos);
+}
+
 TEST_F(LiveViewTest, LocalisationOnlyIsSwitchedOnceThereIsAMap) {
   EXPECT_EQ(Post("localise", address_.token).find("HTTP/1.1 409"), 0u);
   ShowFrame(0);

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -558,6 +559,22 @@ TEST_F(MapperLateMasksTest, OnlyAKeyframeWithoutDetectionsTakesThem) {
   EXPECT_FALSE(AddLate(10)) << "for the second time";
   LateDetections of_more_keypoints{.frame = FrameId(0), .detections = {DetectCup(0)}};
   EXPECT_FALSE(mapper_->Process(of_more_keypoints, nullptr)) << "the keyframe is compacted";
+  EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
+}
+
+TEST_F(MapperLateMasksTest, MasksOfAKeyframeThatWasRemovedChangeNothing) {
+  mapper_->AwaitMasks(true);
+  std::optional<uint32_t> removed;
+  for (uint32_t index = 0; index <= 60 && !removed; index += 2) {
+    ProcessFrame(index);
+    for (uint32_t former = 0; former < index; former += 2) {
+      const std::optional<KeyframeId> keyframe = map().KeyframeOfFrame(FrameId(former));
+      removed = keyframe && !map().keyframes().Contains(*keyframe) ? former : removed;
+    }
+  }
+  ASSERT_TRUE(removed.has_value());
+  EXPECT_FALSE(mapper_->Process(OfTrackedFrame(*removed, {DetectCup(*removed)}), nullptr));
+  EXPECT_TRUE(map().objects().empty());
   EXPECT_EQ(FindViolations(map()), std::vector<std::string>());
 }
 

@@ -589,6 +589,13 @@ TEST(System, TimeStampsThatDoNotIncreaseAreRefused) {
                             std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(system.Track(time, image, depth), CheckError) << time;
   }
+  try {
+    system.Track(9.9, image, depth);
+  } catch (const CheckError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("9.900000 s"), std::string::npos) << what;
+    EXPECT_NE(what.find("10.000000 s"), std::string::npos) << what;
+  }
   EXPECT_EQ(system.frames().size(), 1u);
   EXPECT_EQ(system.Track(10.1, image, depth).state, TrackingState::kTracked)
       << "a refused image changes nothing";

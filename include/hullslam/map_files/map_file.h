@@ -61,10 +61,10 @@ void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettin
 class MapSaver {
  public:
   // Every `seconds`, WriteMap(path, map, settings). `on_failure` is called in the thread of the
-  // saver, with the reason, when a map could not be written.
+  // saver when a map could not be written, with the reason; once while the reason stays the same.
   MapSaver(const std::filesystem::path& path, const MapSettings& settings, double seconds,
            std::function<void(const std::string& reason)> on_failure);
-  // Waits until a map that is being written is complete.
+  // Waits for a map that is being written. WriteMap() at the end of a run has to come after this.
   ~MapSaver();
   // To be called with System::map() after each frame; takes next to no time. Saves the map if it is
   // time and the former one was written. A null map or one without keyframes is never saved.
