@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "util/id_set.h"
+
 namespace hullslam {
 namespace {
 
