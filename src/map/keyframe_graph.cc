@@ -157,6 +157,27 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
   }
 }
 
+bool AreConnected(const Map& map, KeyframeId a, KeyframeId b) {
+  IdSet<KeyframeId> reached;
+  reached.Insert(a);
+  std::vector<KeyframeId> waiting{a};
+  while (!waiting.empty() && !reached.Contains(b)) {
+    const Keyframe& keyframe = map.keyframes().At(waiting.back());
+    waiting.pop_back();
+    for (const Covisible& edge : keyframe.covisible) {
+      if (edge.shared >= kMinShared && reached.Insert(edge.keyframe)) {
+        waiting.push_back(edge.keyframe);
+      }
+    }
+  }
+  return reached.Contains(b);
+}
+
+bool IsTied(const Map& map, KeyframeId keyframe) {
+  const KeyframeId parent = map.keyframes().At(keyframe).parent;
+  return parent.IsValid() && !AreConnected(map, keyframe, parent);
+}
+
 void DetachCovisibility(Map& map, KeyframeId id) {
   const std::vector<Covisible> edges = map.keyframes().At(id).covisible;
   for (const Covisible& edge : edges) {

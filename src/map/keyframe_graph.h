@@ -28,6 +28,13 @@ void DetachFromTree(Map& map, KeyframeId keyframe);
 // most with.
 void UpdateCovisibility(Map& map, KeyframeId keyframe);
 
+// Whether edges of 15 or more shared landmarks lead from one keyframe to the other.
+bool AreConnected(const Map& map, KeyframeId a, KeyframeId b);
+
+// Whether no such edges lead to the parent, as of a keyframe that was dead reckoned: only the poses
+// at that time tie the keyframe to its parent.
+bool IsTied(const Map& map, KeyframeId keyframe);
+
 // Removes all edges of `keyframe`.
 void DetachCovisibility(Map& map, KeyframeId keyframe);
 
