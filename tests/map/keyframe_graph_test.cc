@@ -200,6 +200,21 @@ TEST_F(Covisibility, TheParentIsOlderEvenIfAYoungerKeyframeSharesMore) {
   EXPECT_FALSE(map_.keyframes().At(ids_[0]).parent.IsValid());
 }
 
+TEST_F(Covisibility, ConnectsOverOthersByFifteenLandmarks) {
+  Share(map_, {ids_[0], ids_[1]}, 15);
+  Share(map_, {ids_[1], ids_[2]}, 15);
+  Share(map_, {ids_[2], ids_[3]}, 14);
+  for (const KeyframeId id : ids_) {
+    UpdateCovisibility(map_, id);
+  }
+  EXPECT_TRUE(AreConnected(map_, ids_[0], ids_[2]));
+  EXPECT_FALSE(AreConnected(map_, ids_[0], ids_[3]));
+  EXPECT_TRUE(AreConnected(map_, ids_[3], ids_[3]));
+  EXPECT_FALSE(IsTied(map_, ids_[0])) << "it has no parent";
+  EXPECT_FALSE(IsTied(map_, ids_[2]));
+  EXPECT_TRUE(IsTied(map_, ids_[3]));
+}
+
 TEST_F(Covisibility, DetachingRemovesBothEnds) {
   Share(map_, {ids_[0], ids_[1], ids_[2]}, 20);
   UpdateCovisibility(map_, ids_[1]);
