@@ -28,8 +28,7 @@ KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   return keyframe;
 }
 
-// The graph of all keyframes of an island. Its edges are the relative poses of keyframes in the
-// map.
+// The graph of all keyframes of an island. Its edges are their relative poses in the map.
 class EssentialGraph {
  public:
   EssentialGraph(const Map& map, IslandId island) : map_(map), ids_(KeyframesOf(map, island)) {

@@ -23,8 +23,7 @@ struct Adoption {
   int shared = 0;
 };
 
-// The strongest covisibility edge between a child without new parent and a keyframe that may adopt
-// it.
+// The strongest edge between a child without new parent and a keyframe that may adopt it.
 Adoption BestAdoption(const Map& map, const std::vector<KeyframeId>& waiting,
                       const std::vector<KeyframeId>& adopters) {
   Adoption best;

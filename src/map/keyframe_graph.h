@@ -38,8 +38,7 @@ bool IsTied(const Map& map, KeyframeId keyframe);
 // Removes all edges of `keyframe`.
 void DetachCovisibility(Map& map, KeyframeId keyframe);
 
-// At most `count` covisible keyframes, by decreasing number of shared landmarks, then by decreasing
-// id.
+// At most `count` covisible keyframes, by decreasing number of shared landmarks, then id.
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count);
 
 // The landmarks that any of the keyframes observes, by increasing id.

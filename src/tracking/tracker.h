@@ -172,7 +172,7 @@ class Tracker {
   FrameId first_frame_;               // those of earlier sessions have smaller ids
   std::optional<double> relocalised_at_;  // s, time stamp of the last relocalised frame
   int prior_credit_ = 0;  // number of fused less that of dropped priors of the last frames, bounded
-  LastFrame last_;                        // has no frame before the first frame with a pose
+  LastFrame last_;        // has no frame before the first frame with a pose
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
   // frame with a pose.
   std::optional<double> last_request_time_;
