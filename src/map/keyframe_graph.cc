@@ -160,7 +160,8 @@ bool AreConnected(const Map& map, KeyframeId a, KeyframeId b) {
   IdSet<KeyframeId> reached;
   reached.Insert(a);
   std::vector<KeyframeId> waiting{a};
-  while (!waiting.empty() && !reached.Contains(b)) {
+  const bool may_be_apart = map.keyframes().At(a).frame->motion.has_value();
+  while (may_be_apart && !waiting.empty() && !reached.Contains(b)) {
     const Keyframe& keyframe = map.keyframes().At(waiting.back());
     waiting.pop_back();
     for (const Covisible& edge : keyframe.covisible) {
@@ -169,7 +170,7 @@ bool AreConnected(const Map& map, KeyframeId a, KeyframeId b) {
       }
     }
   }
-  return reached.Contains(b);
+  return !may_be_apart || reached.Contains(b);
 }
 
 bool IsTied(const Map& map, KeyframeId keyframe) {

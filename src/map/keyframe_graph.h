@@ -28,7 +28,8 @@ void DetachFromTree(Map& map, KeyframeId keyframe);
 // most with.
 void UpdateCovisibility(Map& map, KeyframeId keyframe);
 
-// Whether edges of 15 or more shared landmarks lead from one keyframe to the other.
+// Whether edges of 15 or more shared landmarks lead from one keyframe to the other. True if the
+// frame of `a` has no motion prior, because only dead reckoning makes keyframes without edges.
 bool AreConnected(const Map& map, KeyframeId a, KeyframeId b);
 
 // Whether no such edges lead to the parent, as of a keyframe that was dead reckoned: only the poses

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -213,6 +214,10 @@ TEST_F(Covisibility, ConnectsOverOthersByFifteenLandmarks) {
   EXPECT_FALSE(IsTied(map_, ids_[0])) << "it has no parent";
   EXPECT_FALSE(IsTied(map_, ids_[2]));
   EXPECT_TRUE(IsTied(map_, ids_[3]));
+  const auto without_prior = std::make_shared<Frame>(*map_.keyframes().At(ids_[3]).frame);
+  without_prior->motion.reset();
+  map_.MutableKeyframe(ids_[3]).frame = without_prior;
+  EXPECT_FALSE(IsTied(map_, ids_[3])) << "few landmarks are not the same as none";
 }
 
 TEST_F(Covisibility, DetachingRemovesBothEnds) {

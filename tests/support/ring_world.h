@@ -148,9 +148,12 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
     const double turns = static_cast<double>(i) / options.keyframes_per_turn;
     const Rigid3 pose = RingWorld::CamFromWorld(turns);
     SyntheticView& view = made.views.emplace_back(world.Observe(FrameId(3 * i), pose));
-    if (decorate) {
+    if (decorate || options.tied > 0) {
       auto frame = std::make_shared<Frame>(*view.frame);
-      decorate(*frame, pose);
+      frame->motion = MotionPrior();
+      if (decorate) {
+        decorate(*frame, pose);
+      }
       view.frame = std::move(frame);
     }
     const double share = std::clamp(3.0 * turns - 1.0, 0.0, 1.0);
