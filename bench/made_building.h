@@ -80,9 +80,10 @@ class MadeBuilding {
     return {rotation, -(rotation * center)};
   }
 
-  // Whether nothing but the wall of room 5 or 15 is in the image at this time, so it cannot tell
-  // which of the two it shows.
-  bool ShowsOnlyATwin(double time) const {
+  // The share of the columns of the image at this time that show the wall of room 5 or 15. If it is
+  // 1, nothing tells which of the two it is.
+  double ShareOfTwin(double time) const {
+    constexpr int kColumns = 40;
     const Rigid3 cam_from_world = CamFromWorld(time);
     const auto room_at = [&](double column) {
       const double slope = (column - sensor_.camera.cx) / sensor_.camera.fx;
@@ -91,8 +92,13 @@ class MadeBuilding {
       const double angle = std::atan2(at_wall.x(), at_wall.z()) / (2.0 * std::numbers::pi);
       return static_cast<size_t>(kRooms * (angle < 0.0 ? angle + 1.0 : angle));
     };
-    const size_t room = room_at(sensor_.bounds.min_x);
-    return (room == 5 || room == 15) && room_at(sensor_.bounds.max_x) == room;
+    int of_twin = 0;
+    for (int i = 0; i <= kColumns; ++i) {
+      const size_t room = room_at(
+          std::lerp(sensor_.bounds.min_x, sensor_.bounds.max_x, static_cast<double>(i) / kColumns));
+      of_twin += room == 5 || room == 15 ? 1 : 0;
+    }
+    return static_cast<double>(of_twin) / (kColumns + 1);
   }
 
   // The image at this time, whose random errors follow from its number.

@@ -98,8 +98,7 @@ constexpr int kDiscColumns = 32;  // one more than needed, to fill whole SIMD ve
 constexpr std::array<int, kDiscRadius + 1> kDiscHalfWidth = {15, 15, 15, 15, 14, 14, 14, 13,
                                                              13, 12, 11, 10, 9,  8,  6,  3};
 
-// For each pixel of the square around the disc its x from the centre, and 1. Both are 0 outside the
-// disc.
+// For each pixel of the square around the disc its x from the centre, and 1; outside the disc 0, 0.
 struct DiscWeights {
   std::array<std::array<int16_t, kDiscColumns>, kDiscRows> x{};
   std::array<std::array<int16_t, kDiscColumns>, kDiscRows> one{};

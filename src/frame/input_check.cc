@@ -143,8 +143,7 @@ namespace {
 // The usual range of indoor sensors, m.
 constexpr double kUsuallyNearest = 0.3;
 constexpr double kUsuallyFarthest = 5.0;
-// m. Hardly any depth camera sees so far, but values in millimetres or in units of 1/5000 m are
-// larger.
+// m. Hardly any depth camera sees so far, but values in mm or in units of 1/5000 m are larger.
 constexpr double kBeyondAll = 200.0;
 constexpr double kNearShare = 0.1;  // this share of the values is nearer than any sky behind
 

@@ -82,8 +82,7 @@ const Patch& CentreWeights() {
 using PerShift = std::array<float, 16>;
 static_assert(kShifts <= PerShift().size());
 
-// The pixels that the shifted patches cover, with columns to spare for the numbers that are not
-// used.
+// The pixels that the shifted patches cover, and columns for the numbers that are not used.
 class Strip {
  public:
   static constexpr size_t kWidth = static_cast<size_t>(kSide) - 1 + PerShift().size();

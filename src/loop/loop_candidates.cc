@@ -37,8 +37,7 @@ std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
 
 using KeyframeSet = IdSet<KeyframeId>;
 
-// For each of the keyframes that are most covisible with the query, the keyframes that look like
-// it.
+// For each of the keyframes most covisible with the query, the keyframes that look like it.
 std::vector<KeyframeSet> SeenByNeighbours(const Map& map, KeyframeId query) {
   std::vector<KeyframeSet> seen;
   for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kSupporters)) {

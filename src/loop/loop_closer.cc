@@ -119,7 +119,8 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
     return std::nullopt;
   }
   const Loop& loop = *verdict.loop;
-  const bool is_join = AreApart(map, query.keyframe, candidate.keyframe);
+  const bool is_apart = AreApart(map, query.keyframe, candidate.keyframe);
+  const bool is_join = is_apart || !AreConnected(map, query.keyframe, candidate.keyframe);
   if (!is_join) {
     refusal = FindTooMuchDrift(map, loop);
     if (!refusal.empty()) {
@@ -127,7 +128,7 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
     }
   }
   MapCorrection correction =
-      is_join ? MoveIsland(map, loop) : SpreadLoopError(map, loop, fix_scale);
+      is_apart ? MoveIsland(map, loop) : SpreadLoopError(map, loop, fix_scale);
   if (correction.poses.empty()) {
     refusal = "the pose graph could not be solved";
     return std::nullopt;

@@ -20,6 +20,7 @@ constexpr int kStrong = 100;  // shared landmarks of an edge of the essential gr
 // The weight of a loop's edge relative to other edges. It is high, because otherwise the many edges
 // along the path between the ends of the loop would open the loop again.
 constexpr double kLoopWeight = 10.0;
+constexpr double kTiedWeight = 0.01;  // of an edge to a parent that is not known by landmarks
 
 KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   while (map.keyframes().At(keyframe).parent.IsValid()) {
@@ -28,8 +29,7 @@ KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   return keyframe;
 }
 
-// The graph of all keyframes of an island. Its edges are the relative poses of keyframes in the
-// map.
+// The graph of all keyframes of an island. Its edges are their relative poses in the map.
 class EssentialGraph {
  public:
   EssentialGraph(const Map& map, IslandId island) : map_(map), ids_(KeyframesOf(map, island)) {
@@ -60,7 +60,7 @@ class EssentialGraph {
   // The edges to older keyframes, and to the parent.
   void AddEdgesOf(KeyframeId id, const Keyframe& keyframe) {
     if (keyframe.parent.IsValid()) {
-      AddMeasured(keyframe.parent, id, 1.0);
+      AddMeasured(keyframe.parent, id, IsTied(map_, id) ? kTiedWeight : 1.0);
     }
     for (const Covisible& other : keyframe.covisible) {
       const bool is_in_tree = other.keyframe == keyframe.parent ||

@@ -74,6 +74,7 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
   auto reduced = std::make_shared<Frame>();
   reduced->id = frame.id;
   reduced->timestamp = frame.timestamp;
+  reduced->motion = frame.motion;
   reduced->depth_delay = frame.depth_delay;
   reduced->features = SelectKeypoints(frame.features, keypoints);
   if (const std::vector<WordId>& words = frame.words.get(); !words.empty()) {

@@ -16,8 +16,7 @@ namespace hullslam {
 // that were taken from the keyframe before are invalid afterwards.
 //
 // Only this function and the next one change the frame of a keyframe. All data that the map derives
-// from the keypoints of a keyframe when it is added, such as an index of its words, must be updated
-// here.
+// from the keypoints of a keyframe when it is added, such as its indexed words, is updated here.
 void CompactKeyframe(Map& map, KeyframeId keyframe);
 
 // The same with other keypoints and detections, by increasing index; those that show a landmark or

@@ -31,9 +31,8 @@ IslandId MainIsland(const Map& map);
 // already have the same world frame.
 void JoinIslands(Map& map, KeyframeId a, KeyframeId b);
 
-// Removes all islands but one, with their keyframes, landmarks and objects. A removed keyframe, and
-// everything that has a pose relative to it, has no pose afterwards. Returns whether there were
-// others.
+// Removes all islands but one, with their keyframes, landmarks and objects. Removed keyframes, and
+// all that has a pose relative to them, have no pose afterwards. Returns whether there were others.
 bool KeepOnlyIsland(Map& map, IslandId kept);
 
 }  // namespace hullslam

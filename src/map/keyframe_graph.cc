@@ -24,8 +24,7 @@ struct Adoption {
   int shared = 0;
 };
 
-// The strongest covisibility edge between a child without new parent and a keyframe that may adopt
-// it.
+// The strongest edge between a child without new parent and a keyframe that may adopt it.
 Adoption BestAdoption(const Map& map, const std::vector<KeyframeId>& waiting,
                       const std::vector<KeyframeId>& adopters) {
   Adoption best;
@@ -134,6 +133,28 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
   if (!has_parent && best_older.keyframe.IsValid()) {
     SetParent(map, id, best_older.keyframe);
   }
+}
+
+bool AreConnected(const Map& map, KeyframeId a, KeyframeId b) {
+  IdSet<KeyframeId> reached;
+  reached.Insert(a);
+  std::vector<KeyframeId> waiting{a};
+  const bool may_be_apart = map.keyframes().At(a).frame->motion.has_value();
+  while (may_be_apart && !waiting.empty() && !reached.Contains(b)) {
+    const Keyframe& keyframe = map.keyframes().At(waiting.back());
+    waiting.pop_back();
+    for (const Covisible& edge : keyframe.covisible) {
+      if (edge.shared >= kMinShared && reached.Insert(edge.keyframe)) {
+        waiting.push_back(edge.keyframe);
+      }
+    }
+  }
+  return !may_be_apart || reached.Contains(b);
+}
+
+bool IsTied(const Map& map, KeyframeId keyframe) {
+  const KeyframeId parent = map.keyframes().At(keyframe).parent;
+  return parent.IsValid() && !AreConnected(map, keyframe, parent);
 }
 
 void DetachCovisibility(Map& map, KeyframeId id) {

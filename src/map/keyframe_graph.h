@@ -28,11 +28,18 @@ void DetachFromTree(Map& map, KeyframeId keyframe);
 // most with.
 void UpdateCovisibility(Map& map, KeyframeId keyframe);
 
+// Whether edges of 15 or more shared landmarks lead from one keyframe to the other. True if the
+// frame of `a` has no motion prior, because only dead reckoning makes keyframes without edges.
+bool AreConnected(const Map& map, KeyframeId a, KeyframeId b);
+
+// Whether no such edges lead to the parent, as of a keyframe that was dead reckoned: only the poses
+// at that time tie the keyframe to its parent.
+bool IsTied(const Map& map, KeyframeId keyframe);
+
 // Removes all edges of `keyframe`.
 void DetachCovisibility(Map& map, KeyframeId keyframe);
 
-// At most `count` covisible keyframes, by decreasing number of shared landmarks, then by decreasing
-// id.
+// At most `count` covisible keyframes, by decreasing number of shared landmarks, then id.
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count);
 
 // The keyframes that observe any of the landmarks, which need not exist, with the number that each

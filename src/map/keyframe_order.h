@@ -8,9 +8,8 @@
 
 namespace hullslam {
 
-// The order of keyframes in time. Ids of keyframes do not give it: masks that come late can make a
-// keyframe of a frame that is earlier than older keyframes' frames (LateDetections). Ids of frames
-// do.
+// The order of keyframes in time. Ids of frames give it, ids of keyframes do not: late masks can
+// make a keyframe of a frame that is earlier than those of older keyframes (LateDetections).
 
 // The frame that a keyframe was made of. The keyframe may be culled.
 FrameId FrameIdOf(const Map& map, KeyframeId keyframe);

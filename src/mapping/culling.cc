@@ -191,8 +191,7 @@ bool JoinsItsNeighbours(const Map& map, KeyframeId id, int min_shared) {
          std::min(weakest, min_shared);
 }
 
-// The centre of the object. Null for a candidate without shape and depth, whose location is not
-// known.
+// The centre of the object. Null if it is not known: of a candidate without shape and depth.
 std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
                                         std::span<const ResolvedObservation> views) {
   if (object.has_shape) {

@@ -24,8 +24,7 @@ constexpr size_t kMostPoses = 24;      // largest number of poses that are retur
 // Largest difference of two poses at the same place, in radians and as a share of the depth.
 constexpr double kSameAngle = 0.15;
 constexpr double kSameDistance = 0.15;
-// Largest deviation of a centre from its expected position, in shares of its distance and of its
-// radius.
+// Largest deviation of a centre from where it is expected, over its distance and its radius.
 constexpr double kDistanceShare = 0.02;
 constexpr double kRadiusShare = 0.3;
 

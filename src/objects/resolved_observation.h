@@ -41,8 +41,7 @@ void AddSurfaceLandmarks(const Map& map, std::span<ResolvedObservation> observat
 // landmarks. Camera frame.
 std::vector<Eigen::Vector3d> SurfacePoints(const ResolvedObservation& observation);
 
-// The median depth (z) of its landmarks, in the unit of the map; nothing if there are fewer than
-// three.
+// The median depth (z) of its landmarks, in the unit of the map; null if fewer than three.
 std::optional<double> LandmarkDepth(const ResolvedObservation& observation);
 
 // Depth points of the observations in the world frame, evenly chosen, about `max_points` at most.

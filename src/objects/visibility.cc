@@ -102,8 +102,7 @@ struct RayThrough {
   double half = 0.0;
 };
 
-// Passes the rays near the centre of an ellipsoid on, with the depth (z, m) that was measured along
-// them.
+// Passes the rays near the centre of an ellipsoid on, with their measured depth (z, m).
 class RayFilter {
  public:
   RayFilter(const PinholeCamera& camera, const Rigid3& cam_from_world, const Ellipsoid& ellipsoid)

@@ -69,8 +69,7 @@ class Bundle {
     }
   }
 
-  // Leaves out observations without a residual at the start: their points are not in front of the
-  // camera.
+  // Leaves out observations without a residual at the start: of points behind the camera.
   void ExcludeUndefined() {
     ForEachObservation([](PointObservation& observation, double chi2, size_t) {
       observation.is_inlier = std::isfinite(chi2);

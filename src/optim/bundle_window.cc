@@ -60,6 +60,10 @@ BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, s
     window.fixed.push_back(window.moving.front());
     window.moving.erase(window.moving.begin());
   }
+  const auto tied = std::stable_partition(window.moving.begin(), window.moving.end(),
+                                          [&](KeyframeId id) { return !IsTied(map, id); });
+  window.fixed.insert(window.fixed.end(), tied, window.moving.end());
+  window.moving.erase(tied, window.moving.end());
   std::sort(window.fixed.begin(), window.fixed.end());
   if (objects == WindowObjects::kMapped) {
     window.objects = ObservedObjects(map, window.moving);
@@ -76,7 +80,8 @@ BundleWindow GlobalWindow(const Map& map, IslandId island, WindowObjects objects
   BundleWindow window;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     if (keyframe.island == island) {
-      (keyframe.parent.IsValid() ? window.moving : window.fixed).push_back(id);
+      const bool is_held = !keyframe.parent.IsValid() || IsTied(map, id);
+      (is_held ? window.fixed : window.moving).push_back(id);
     }
   });
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {

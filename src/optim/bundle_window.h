@@ -21,16 +21,16 @@ struct BundleWindow {
 // most landmarks with it, at most `max_moving` in all. The window has all landmarks that they
 // observe. The fixed keyframes are those others that observe most of these landmarks, at most
 // `max_fixed`; 0 stands for all, so that no observation of a moving landmark is ignored. The root
-// of the spanning tree never moves. If there would be no fixed keyframe, the oldest moving one
-// becomes fixed. With WindowObjects::kMapped the window also has the mapped objects that the moving
-// keyframes observe.
+// of the spanning tree and tied keyframes (IsTied) never move. If there would be no fixed keyframe,
+// the oldest moving one becomes fixed. With WindowObjects::kMapped the window also has the mapped
+// objects that the moving keyframes observe.
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);
 // The objects that take part in bundle adjustment: the mapped ones, if the options say so.
 WindowObjects ObjectsToAdjust(const ObjectOptions& options);
 // All keyframes and landmarks of an island and, if asked for, its mapped objects. Only the root of
-// the spanning tree is fixed.
+// the spanning tree and tied keyframes are fixed.
 BundleWindow GlobalWindow(const Map& map, IslandId island,
                           WindowObjects objects = WindowObjects::kNone);
 

@@ -31,14 +31,12 @@ class ObjectBundle {
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const PoseIndices& pose_indices, const ObjectBundleOptions& options);
 
-  // The number of costs: a prior per object, and for each detection its silhouette and its depth
-  // points.
+  // The number of costs: a prior per object, and the silhouette and depth points per detection.
   size_t CountCosts() const;
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the half axes of the objects into `axes_group` of the ordering and their poses into
-  // group 2.
+  // Puts the half axes of the objects into `axes_group` of the ordering, their poses into group 2.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                      ceres::ParameterBlockOrdering& ordering);
   // The order of a step in which only the objects move: first their poses, then their half axes.
@@ -54,8 +52,7 @@ class ObjectBundle {
   // Leaves the undefined observations out. Returns whether there were any.
   bool LeaveOutUndefinedObservations();
 
-  // Writes the quadrics. An object fails if it is not in front of a camera whose observation was
-  // left out.
+  // Writes the quadrics. An object fails if it is behind a camera whose observation was left out.
   void Write(const std::vector<PoseBlock>& poses, BundleResult& result) const;
 
  private:

@@ -15,8 +15,7 @@ namespace {
 constexpr float kRadius = 8.0f;    // px at level 0
 constexpr int kMaxDistance = 100;  // Hamming
 // The level of the vocabulary at which keypoints are compared. In a vocabulary with ten branches, a
-// node of this level has about a hundred words; with fewer words per node, too many matches are
-// lost.
+// node of this level has about a hundred words; with fewer words, too many matches are lost.
 constexpr int kNodeLevel = 2;
 
 // With ten keyframes of each kind a frame takes some tenths of a second.

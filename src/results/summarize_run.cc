@@ -181,6 +181,14 @@ std::string DescribeLoss(const System& system, size_t given, const RunSummary& s
   return {};
 }
 
+std::map<PriorUse, size_t> CountPriors(std::span<const TrackedFrame> frames) {
+  std::map<PriorUse, size_t> uses;
+  for (const TrackedFrame& frame : frames) {
+    ++uses[frame.prior];
+  }
+  return uses;
+}
+
 }  // namespace
 
 RunSummary SummarizeRun(const RunResult& result, const System& system,
@@ -220,6 +228,13 @@ RunSummary SummarizeRun(const RunResult& result, const System& system,
   if (options.sensor == SensorKind::kMonocular) {
     summary.initialisation = result.initialisation;
   }
+  std::map<PriorUse, size_t> priors = CountPriors(system.frames());
+  if (priors[PriorUse::kDropped] > priors[PriorUse::kFused]) {
+    warnings.push_back(fmt::format(
+        "the odometry is contradicted by {} and fused with {}, expected the way of the camera, not "
+        "of the body that carries it, in m, and its errors in odometry.sigma_way and sigma_turn",
+        Counted(priors[PriorUse::kDropped], "frame"), Counted(priors[PriorUse::kFused], "frame")));
+  }
   const Trajectory trajectory = system.trajectory();
   if (groundtruth && !trajectory.empty()) {
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory, warnings);
@@ -229,10 +244,7 @@ RunSummary SummarizeRun(const RunResult& result, const System& system,
 }
 
 std::string DescribePriors(std::span<const TrackedFrame> frames) {
-  std::map<PriorUse, size_t> uses;
-  for (const TrackedFrame& frame : frames) {
-    ++uses[frame.prior];
-  }
+  std::map<PriorUse, size_t> uses = CountPriors(frames);
   if (uses[PriorUse::kNone] == frames.size()) {
     return {};
   }

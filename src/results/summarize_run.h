@@ -32,8 +32,8 @@ struct RunResult {
 };
 
 // The content of summary.json for a finished run, but for masks, objects and what belongs to its
-// sequence. Errors are only known with ground truth, which may be absent; what is odd about them is
-// added to `warnings`.
+// sequence. Errors are only known with ground truth, which may be absent; what is odd about them,
+// or about motion priors, is added to `warnings`.
 RunSummary SummarizeRun(const RunResult& result, const System& system,
                         const std::optional<Trajectory>& groundtruth,
                         std::vector<std::string>& warnings);

@@ -9,8 +9,7 @@
 namespace hullslam {
 namespace {
 
-// A pose in the final map is wrong if it finds a smaller share of the landmarks that tracking
-// found.
+// A final pose is wrong if it finds a smaller share of the landmarks that tracking found.
 constexpr double kMinFoundAgain = 0.9;
 
 // The pose of a tracked frame, if it is in this island.
@@ -28,8 +27,7 @@ std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFra
   return std::nullopt;
 }
 
-// The keyframes of the main island. Keyframes of late masks have larger ids than keyframes of later
-// frames.
+// The keyframes of the main island. Those of late masks have larger ids than those of later frames.
 std::map<FrameId, const Keyframe*> KeyframesByFrame(const Map& map) {
   std::map<FrameId, const Keyframe*> keyframes;
   for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {

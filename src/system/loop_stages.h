@@ -41,8 +41,7 @@ void StartNextStage(const MapMessage& message, bool is_applied, const SystemOpti
 // Searches loops in one thread, and adjusts the whole map after a loop in another one.
 class LoopThreads final : public LoopStages {
  public:
-  // `sensor` must outlive this object. `send` is called by both threads with corrections for the
-  // mapper.
+  // `sensor` must outlive this object. Both threads call `send` with corrections for the mapper.
   LoopThreads(const Sensor& sensor, const SystemOptions& options,
               std::function<void(MapCorrection)> send);
   ~LoopThreads() override;

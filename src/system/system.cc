@@ -390,8 +390,7 @@ void System::CheckMotion(const Frame& frame) const {
   }
 }
 
-// Vectors of different lengths are of different networks, so no question could be asked about the
-// map.
+// Vectors of different lengths are of different networks, and the map could not be queried.
 void System::CheckVectors(const Frame& frame) {
   size_t known = vector_length_;
   for (const Detection& detection : frame.detections) {

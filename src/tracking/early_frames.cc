@@ -108,8 +108,7 @@ std::optional<FoundFrame> FindFrame(const Map& map, const TrackingContext& conte
   return MakeFound(map, frame, std::move(found->tracking));
 }
 
-// Tracks a frame from the frame after it. `later`, the one after that, gives the velocity if it was
-// found.
+// Tracks a frame from the one after it. `later`, the one after that, gives the velocity if found.
 std::optional<FoundFrame> TrackBack(const Map& map, const TrackingContext& context,
                                     const std::shared_ptr<const Frame>& frame, LastFrame after,
                                     const FoundFrame* later) {

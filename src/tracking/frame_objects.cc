@@ -21,8 +21,7 @@ Rigid3 RightCamera(const Sensor& sensor, Rigid3 cam_from_world) {
   return cam_from_world;
 }
 
-// The lines whose excess is known, moved by the excess. Empty if these are fewer than half of the
-// lines.
+// The lines whose excess is known, moved by the excess. Empty if these are fewer than half.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
                                        const ObjectLandmark& object,
                                        std::span<const SilhouetteLine> lines,

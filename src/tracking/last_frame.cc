@@ -13,8 +13,7 @@ namespace hullslam {
 namespace {
 
 // Replaces each landmark by the one that has replaced it in the map. If two of them were merged,
-// only the first keypoint keeps the result, because a frame observes a landmark at one keypoint
-// only.
+// only the first keypoint keeps the result: a frame observes a landmark at one keypoint only.
 void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
   IdSet<LandmarkId> taken;
   for (LandmarkId& landmark : landmarks) {

@@ -64,8 +64,7 @@ std::optional<MotionPrior> MotionAhead(const LastFrame& last, const Frame& frame
 LastFrame FollowMap(const Map& map, LastFrame last);
 
 // The motion from the last frame to this one. Absent if there is no last frame, or if frames
-// between the two were lost, because the mean velocity over a long time differs from the current
-// velocity.
+// between the two were lost: a mean velocity over a long time is not the current one.
 std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
                                         const Rigid3& cam_from_world);
 
@@ -73,9 +72,8 @@ std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& fram
 inline constexpr double kMaxExtrapolation = 4.0;
 
 // The motion from the last frame to a frame at `timestamp` (s): last.ahead if it is known, else
-// that of a camera that keeps its velocity. Null if the velocity is not known, or if the time step
-// is much longer than the one over which the velocity was measured: then the velocity may have
-// changed.
+// that of a camera that keeps its velocity. Null if the velocity is not known, or if it may have
+// changed: the time step is much longer than the one over which the velocity was measured.
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp);
 
 // The share of the landmarks that a camera at `cam_from_world` has in its image. Ids that are

@@ -33,8 +33,7 @@ inline constexpr double kLocalSearchRadius = 12.0;
 // A frame tracked against its local map.
 struct LocalTracking {
   PoseEstimate estimate;
-  // The keyframe that shares most landmarks with the frame, or the last reference if none shares
-  // any.
+  // The keyframe that shares most landmarks with the frame; the last reference if none shares any.
   KeyframeId reference;
   std::vector<ObjectId> objects;    // one per detection; invalid where it shows no mapped object
   std::vector<LandmarkId> visible;  // landmarks that should be in the image, found or not

@@ -17,8 +17,7 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-// Squared Mahalanobis distance of a prior that is dropped: the 99.9 % quantile for 6 degrees of
-// freedom.
+// Squared Mahalanobis distance of a prior that is dropped: the 99.9 % quantile of 6 dimensions.
 constexpr double kMostPriorError = 22.458;
 
 // At the solution, the gradient g of half the cost of one quarter of the image has the covariance

@@ -36,8 +36,7 @@ struct PoseEstimate {
   double expected_squares = 0.0;
   Eigen::Matrix<double, 6, 6> last_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> motion_covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
-  // place.
+  // A keyframe that shows the same place as the frame; invalid if landmarks determine the place.
   KeyframeId keyframe_of_place;
 
   // The number of landmarks that would constrain the pose as much as the landmarks and objects do.

@@ -30,8 +30,7 @@ class SeenDepths {
 
   // Adds a point at an undistorted pixel. Points that are not in front of the camera are left out.
   void Add(const Eigen::Vector2d& pixel, double depth);
-  // The mean of the cell; if the cell is empty, the mean of the whole image; 0 if all cells are
-  // empty.
+  // The mean of the cell; if it is empty, that of the whole image; 0 if all cells are empty.
   double InverseDepthAt(const Eigen::Vector2d& pixel) const;
   // One inverse depth per keypoint: from its own depth if that is known, else InverseDepthAt().
   std::vector<double> InverseDepths(const FrameFeatures& features) const;

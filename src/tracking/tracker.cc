@@ -19,6 +19,7 @@ constexpr size_t kYoungKeyframes = 10;  // an island with fewer keyframes is you
 // frames, because with few images per second a single lost frame says little.
 constexpr double kPatience = 1.0;
 constexpr int kPatientFrames = 3;
+constexpr int kMostCredit = 10;  // frames; see Tracker::prior_credit_
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
@@ -199,7 +200,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   PoseSearch search;
   std::optional<Found> found = FindPose(frame, map, search);
   if (!found && last_.ahead) {
-    if (std::optional<Result> reckoned = DeadReckon(frame, map)) {
+    if (std::optional<Result> reckoned = DeadReckon(frame, map, mapper)) {
       return std::move(*reckoned);
     }
   }
@@ -255,10 +256,14 @@ bool Tracker::FuseAhead(const MotionPrior& ahead, const Frame& frame, const Map&
 }
 
 // The result of a frame that shows too few landmarks, by the priors since the last one that did.
-// Null if the pose has become too uncertain to tell what the image may show.
+// Null if the pose has become too uncertain to tell what the image may show. If images are good but
+// of an unknown place, the frame becomes a keyframe, which only the priors tie to the others.
 std::optional<Tracker::Result> Tracker::DeadReckon(const std::shared_ptr<const Frame>& frame,
-                                                   const Map& map) {
+                                                   const Map& map, const MapperStatus& mapper) {
   constexpr double kMostOfWidth = 0.25;  // standard deviation of a pixel over the image's width
+  if (prior_credit_ < 0) {
+    return std::nullopt;  // landmarks have contradicted most of the last priors
+  }
   const MotionPrior& ahead = *last_.ahead;
   const auto covariance_after = [&](const Eigen::Matrix<double, 6, 6>& covariance) {
     return (InAxesOf(ahead.cam_from_last_cam, covariance) + ahead.covariance).eval();
@@ -271,7 +276,9 @@ std::optional<Tracker::Result> Tracker::DeadReckon(const std::shared_ptr<const F
   last_.motion.reset();
   last_.velocity.reset();
   lost_since_.reset();
-  lost_frames_ = 0;
+  const size_t with_depth = KeypointsByDepth(frame->features).size();
+  const bool is_rich = with_depth >= static_cast<size_t>(options_.min_initial_points);
+  lost_frames_ = is_rich ? lost_frames_ + 1 : 0;
   Result result = MakeResult(frame, TrackingState::kTracked);
   TrackedFrame& tracked = result.report.tracked;
   tracked.cam_from_world = ahead.cam_from_last_cam * last_.cam_from_world;
@@ -279,6 +286,20 @@ std::optional<Tracker::Result> Tracker::DeadReckon(const std::shared_ptr<const F
   tracked.covariance = covariance_after(last_.covariance);
   tracked.quality = QualityOf(sigma);
   tracked.prior = PriorUse::kAlone;
+  if (lost_frames_ >= kPatientFrames && mapper.is_idle && !is_localizing_only_) {
+    LocalTracking nothing;
+    nothing.estimate.landmarks = result.report.landmarks;
+    result.message = MakeRequest(frame, nothing, *tracked.from_keyframe);
+    drift_.Add(frame->id, tracked.cam_from_world, *tracked.covariance);
+    lost_frames_ = 0;
+    last_.frame = frame;
+    last_.landmarks = result.report.landmarks;
+    last_.pose = tracked.from_keyframe;
+    last_.cam_from_world = tracked.cam_from_world;
+    last_.followed_change = 1.0;
+    last_.measured_covariance = last_.shared_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    last_.covariance = *tracked.covariance;
+  }
   return result;
 }
 
@@ -293,6 +314,9 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
   if (found.is_relocalised) {
     relocalised_at_ = as_read->timestamp;
   }
+  const int credit =
+      found.prior == PriorUse::kFused ? 1 : (found.prior == PriorUse::kDropped ? -1 : 0);
+  prior_credit_ = std::clamp(prior_credit_ + credit, -kMostCredit, kMostCredit);
   initialiser_.Forget();
   std::shared_ptr<const Frame> frame = std::move(found.corrected.frame);
   const LocalTracking& tracking = found.tracking;

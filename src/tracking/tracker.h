@@ -129,7 +129,8 @@ class Tracker {
                                         PoseSearch& search) const;
   bool FuseAhead(const MotionPrior& ahead, const Frame& frame, const Map& map,
                  std::optional<Found>& found) const;
-  std::optional<Result> DeadReckon(const std::shared_ptr<const Frame>& frame, const Map& map);
+  std::optional<Result> DeadReckon(const std::shared_ptr<const Frame>& frame, const Map& map,
+                                   const MapperStatus& mapper);
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
                                          const Map& map, PoseSearch& search) const;
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
@@ -167,10 +168,11 @@ class Tracker {
   bool has_had_wide_steps_ = false;  // whether they ever were, or the map was begun more than once
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
-  int lost_frames_ = 0;               // since then
+  int lost_frames_ = 0;               // since then; of dead reckoned ones, the last with features
   FrameId first_frame_;               // those of earlier sessions have smaller ids
   std::optional<double> relocalised_at_;  // s, time stamp of the last relocalised frame
-  LastFrame last_;                        // has no frame before the first frame with a pose
+  int prior_credit_ = 0;  // number of fused less that of dropped priors of the last frames, bounded
+  LastFrame last_;        // has no frame before the first frame with a pose
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
   // frame with a pose.
   std::optional<double> last_request_time_;

@@ -249,6 +249,22 @@ TEST_F(RgbdTum, ClosesALoopOnlyIfDriftMayExplainIt) {
   EXPECT_EQ(loops(large + Arguments{"--vocabulary", "none"}), 0);
 }
 
+// The odometry is that of a body whose axes are not those of the camera.
+TEST_F(RgbdTum, WarnsOfAnOdometryThatLandmarksContradict) {
+  const PlaneSequence wall(20);
+  const fs::path file = folder_.path() / "wheels.txt";
+  Trajectory wheels = ReadTrajectory(wall.path() / "groundtruth.txt");
+  const auto run = [&] {
+    WriteTrajectory(file, wheels);
+    return RunWell({wall.path(), "--quiet", "--odometry", file}).errors;
+  };
+  EXPECT_EQ(run(), "");
+  for (StampedPose& pose : wheels) {
+    std::swap(pose.world_from_cam.translation.x(), pose.world_from_cam.translation.z());
+  }
+  ExpectParts(run(), {"warning: ", "contradicted by", "not of the body"});
+}
+
 // The loop is a wrong one, so that it moves the map far.
 TEST_F(RgbdTum, ARecordingOfLivePosesHasTheTransformsOfRos) {
   const PlaneSequence wall(40, 0.1, 40, 1360);

@@ -32,7 +32,7 @@ bool AreCovisible(const Map& map, KeyframeId a, KeyframeId b) {
                      [&](const Covisible& other) { return other.keyframe == b; });
 }
 
-bool AreConnected(const Map& map, KeyframeId a, KeyframeId b) {
+bool AreNear(const Map& map, KeyframeId a, KeyframeId b) {
   const std::vector<Covisible>& covisible = map.keyframes().At(a).covisible;
   return a == b || AreCovisible(map, a, b) ||
          std::any_of(covisible.begin(), covisible.end(),
@@ -53,7 +53,7 @@ TEST(LoopCandidates, AreNeitherConnectedWithTheQueryNorWithEachOther) {
   for (const auto& [id, keyframe] : made.map.keyframes()) {
     const Ids candidates = Find(made.map, id);
     for (const KeyframeId candidate : candidates) {
-      EXPECT_FALSE(AreConnected(made.map, id, candidate)) << id.value << ' ' << candidate.value;
+      EXPECT_FALSE(AreNear(made.map, id, candidate)) << id.value << ' ' << candidate.value;
       for (const KeyframeId other : candidates) {
         EXPECT_FALSE(AreCovisible(made.map, candidate, other));
       }

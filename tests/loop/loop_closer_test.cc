@@ -112,6 +112,17 @@ TEST_F(LoopCloserTest, RefusesALoopThatDriftCannotExplain) {
   EXPECT_TRUE(Close(turned));
 }
 
+// A motion prior that was wrong may have placed the second part anywhere.
+TEST_F(LoopCloserTest, TheBudgetDoesNotCountPartsThatAreTiedByAPose) {
+  RingMap made = MakeRingMap(
+      SharedRing(), {.drift = Rigid3(ExpSo3({0.0, 0.8, 0.0}), {5.0, 0.0, 0.0}), .tied = 12});
+  const std::optional<MapCorrection> correction = Close(made);
+  ASSERT_TRUE(correction);
+  const Map map = Corrected(made, *correction);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  EXPECT_LT(PoseError(made, map, made.last()), 0.1);
+}
+
 TEST_F(LoopCloserTest, OtherObjectsAtTheSamePlaceSpeakAgainstALoop) {
   EXPECT_TRUE(Closes(ThreeThings()));
   std::vector<RingThing> things = ThreeThings();

@@ -61,6 +61,20 @@ TEST(SpreadLoopError, RemovesTheDriftAtTheEndAndMuchOfItBetween) {
   EXPECT_LT(after, 0.5 * before);
 }
 
+// The drift grows from keyframe 8 to 16. The poses within both parts of the map are kept.
+TEST(SpreadLoopError, IsTakenByAKeyframeThatIsTied) {
+  RingMap made = MakeRingMap(SharedRing(), {.tied = 12});
+  const Map corrected = Corrected(made, SpreadLoopError(made.map, TrueLoop(made, 29, 5), true));
+  EXPECT_LT(PoseError(made, corrected, made.last()), 1e-3);
+  for (uint32_t i = 0; i < 29; ++i) {
+    const auto step = [&](const Map& map) {
+      return map.CamFromWorld(KeyframeId(i + 1)) * Inverse(map.CamFromWorld(KeyframeId(i)));
+    };
+    const Rigid3 change = step(corrected) * Inverse(step(made.map));
+    EXPECT_EQ(change.translation.norm() > 1e-3, i == 11) << i;
+  }
+}
+
 TEST(SpreadLoopError, NamesTheLoopAndAllKeyframesAsTheyAreInTheSnapshot) {
   RingMap made = MakeRingMap(SharedRing());
   made.map.CountCorrection();

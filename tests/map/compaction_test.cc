@@ -137,6 +137,7 @@ Frame MakeFullFrame() {
   Frame frame;
   frame.id = FrameId(7);
   frame.timestamp = 1.5;
+  frame.motion = MotionPrior();
   FrameFeatures& features = frame.features;
   for (uint32_t i = 0; i < 10; ++i) {
     Keypoint& keypoint = features.keypoints.emplace_back();
@@ -161,6 +162,7 @@ TEST(ReducedFrame, HasTheChosenKeypointsAndDetections) {
   const std::vector<uint32_t> keypoints = {2, 4, 9};
   const std::vector<uint32_t> detections = {1, 2};
   const auto reduced = ReduceFrame(frame, keypoints, detections);
+  EXPECT_TRUE(reduced->motion) << "a motion prior tells what it ties";
   EXPECT_EQ(reduced->id, frame.id);
   EXPECT_EQ(reduced->timestamp, frame.timestamp);
   ASSERT_EQ(reduced->features.size(), 3u);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -198,6 +199,25 @@ TEST_F(Covisibility, TheParentIsOlderEvenIfAYoungerKeyframeSharesMore) {
   EXPECT_EQ(map_.keyframes().At(ids_[1]).parent, ids_[0]);
   UpdateCovisibility(map_, ids_[0]);
   EXPECT_FALSE(map_.keyframes().At(ids_[0]).parent.IsValid());
+}
+
+TEST_F(Covisibility, ConnectsOverOthersByFifteenLandmarks) {
+  Share(map_, {ids_[0], ids_[1]}, 15);
+  Share(map_, {ids_[1], ids_[2]}, 15);
+  Share(map_, {ids_[2], ids_[3]}, 14);
+  for (const KeyframeId id : ids_) {
+    UpdateCovisibility(map_, id);
+  }
+  EXPECT_TRUE(AreConnected(map_, ids_[0], ids_[2]));
+  EXPECT_FALSE(AreConnected(map_, ids_[0], ids_[3]));
+  EXPECT_TRUE(AreConnected(map_, ids_[3], ids_[3]));
+  EXPECT_FALSE(IsTied(map_, ids_[0])) << "it has no parent";
+  EXPECT_FALSE(IsTied(map_, ids_[2]));
+  EXPECT_TRUE(IsTied(map_, ids_[3]));
+  const auto without_prior = std::make_shared<Frame>(*map_.keyframes().At(ids_[3]).frame);
+  without_prior->motion.reset();
+  map_.MutableKeyframe(ids_[3]).frame = without_prior;
+  EXPECT_FALSE(IsTied(map_, ids_[3])) << "few landmarks are not the same as none";
 }
 
 TEST_F(Covisibility, DetachingRemovesBothEnds) {

@@ -26,6 +26,7 @@ inline std::vector<KeyframeId> KeyframeIds(const std::vector<uint32_t>& numbers)
 inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t with_depth = 0) {
   auto frame = std::make_shared<Frame>();
   frame->id = FrameId(id);
+  frame->motion = MotionPrior();
   FrameFeatures& features = frame->features;
   features.keypoints.resize(keypoints);
   features.descriptors.resize(keypoints);

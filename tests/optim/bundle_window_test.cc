@@ -72,8 +72,8 @@ TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
   EXPECT_EQ(LocalWindow(map, KeyframeId(0), 20, 40).fixed, KeyframeIds({0}));
   EXPECT_TRUE(LocalWindow(map, KeyframeId(0), 20, 40).moving.empty());
   // Two more keyframes, which share no landmark with the root.
-  for (int i = 0; i < 2; ++i) {
-    SetParent(map, AddKeyframe(map, 50), KeyframeId(0));
+  for (uint32_t i = 0; i < 2; ++i) {
+    SetParent(map, AddKeyframe(map, 50), KeyframeId(i));
   }
   Share(map, KeyframeIds({1, 2}), 20);
   UpdateCovisibility(map, KeyframeId(2));
@@ -101,6 +101,21 @@ TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
   EXPECT_EQ(window.moving.size(), 20u);
   EXPECT_EQ(window.fixed.size(), 40u);
   EXPECT_EQ(LocalWindow(map, KeyframeId(59), 20, 30).fixed.size(), 30u);
+}
+
+// Keyframes 0 to 9 and 10 to 13 share no landmarks but for a few that may be wrong.
+TEST(Windows, DoNotMoveAKeyframeThatIsTied) {
+  Map map = MakeChain(10);
+  for (uint32_t i = 10; i < 14; ++i) {
+    AddKeyframe(map, 100);
+    Share(map, KeyframeIds({i - 1, i}), i == 10 ? 5 : 20);
+    UpdateCovisibility(map, KeyframeId(i));
+  }
+  EXPECT_EQ(GlobalWindow(map, IslandId(0)).fixed, KeyframeIds({0, 10}));
+  const BundleWindow window = LocalWindow(map, KeyframeId(10), 20, 40);
+  EXPECT_EQ(std::ranges::count(window.moving, KeyframeId(10)), 0);
+  EXPECT_EQ(std::ranges::count(window.fixed, KeyframeId(10)), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(window.fixed));
 }
 
 TEST(GlobalWindow, MovesAllButTheRoot) {

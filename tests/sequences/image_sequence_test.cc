@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -165,6 +167,21 @@ TEST(ReadOdometry, StampsMustBeThoseOfTheImages) {
                    {"wheels.txt: its stamps go from 10.000 to 10.100 s, expected those of the "
                     "images, 9.500 to 9.500"});
   ExpectInputError([&] { ReadOdometry(file, SensorKind::kMonocular, sequence); }, {"in metres"});
+}
+
+TEST(ReadOdometry, RefusesBadLinesByTheirNumbers) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wheels.txt";
+  const auto refuses = [&](const std::string& line, const std::string& fault) {
+    std::ofstream(file) << "9.4 0 0 0 0 0 0 1\n" << line << "\n9.6 0 0 0 0 0 0 1\n";
+    ImageSequence sequence;
+    sequence.frames = {{9.5, {}, {}}};
+    ExpectInputError([&] { ReadOdometry(file, SensorKind::kStereo, sequence); }, {fault});
+  };
+  refuses("9.5 0 nan 0 0 0 0 1", "wheels.txt:2: ty is 'nan', expected a finite number");
+  refuses("9.3 0 0 0 0 0 0 1", "wheels.txt:2: time stamp 9.300000 is before");
+  refuses("9.5 0 0 0 0 0 0 0", "wheels.txt:2: the quaternion has length 0");
+  refuses("9.5 0 0 0 0 0 1", "wheels.txt:2: 7 columns, expected 8");
 }
 
 TEST(ImageSequence, GivesTheMotionBetweenTwoStamps) {

@@ -120,6 +120,9 @@ struct RingMapOptions {
   // evenly up to two thirds of a turn, and then stays.
   Rigid3 drift = Rigid3(ExpSo3({0.01, 0.04, -0.02}), {0.2, -0.1, 0.25});
   bool has_vocabulary = true;
+  // If not 0, keyframes from this one on share no landmark with earlier ones, and the pose alone
+  // ties it to the keyframe before it.
+  uint32_t tied = 0;
 };
 
 // Landmarks are points that at least two keyframes of the same turn see. Those of the last turn are
@@ -145,9 +148,12 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
     const double turns = static_cast<double>(i) / options.keyframes_per_turn;
     const Rigid3 pose = RingWorld::CamFromWorld(turns);
     SyntheticView& view = made.views.emplace_back(world.Observe(FrameId(3 * i), pose));
-    if (decorate) {
+    if (decorate || options.tied > 0) {
       auto frame = std::make_shared<Frame>(*view.frame);
-      decorate(*frame, pose);
+      frame->motion = MotionPrior();
+      if (decorate) {
+        decorate(*frame, pose);
+      }
       view.frame = std::move(frame);
     }
     const double share = std::clamp(3.0 * turns - 1.0, 0.0, 1.0);
@@ -172,7 +178,8 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
     Sightings run;
     for (const auto& sighting : seen[point]) {
       const bool is_new_turn =
-          !run.empty() && sighting.first - run.back().first > options.keyframes_per_turn / 2;
+          !run.empty() && (sighting.first - run.back().first > options.keyframes_per_turn / 2 ||
+                           (run.back().first < options.tied && sighting.first >= options.tied));
       if (is_new_turn && run.size() >= 2) {
         add_landmark(point, run);
       }
@@ -187,6 +194,9 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
   }
   for (uint32_t i = 0; i < options.keyframes; ++i) {
     UpdateCovisibility(made.map, KeyframeId(i));
+  }
+  if (options.tied > 0) {
+    SetParent(made.map, KeyframeId(options.tied), KeyframeId(options.tied - 1));
   }
   return made;
 }

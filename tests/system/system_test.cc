@@ -37,9 +37,9 @@ constexpr double kTexelsPerMetre = 260;  // about the resolution of the image at
 // A wall of random patches, photographed by a moving camera.
 class Wall {
  public:
-  Wall() : texture_(900, 1200, CV_8UC3) {
+  explicit Wall(int seed = 3) : texture_(900, 1200, CV_8UC3) {
     texture_.setTo(cv::Scalar::all(120));
-    cv::RNG random(3);
+    cv::RNG random(seed);
     for (int i = 0; i < 4000; ++i) {
       const cv::Rect box(random.uniform(0, texture_.cols - 40), random.uniform(0, 860),
                          random.uniform(5, 40), random.uniform(5, 40));
@@ -1118,6 +1118,41 @@ TEST(SystemStart, LocalizationNeedsAMap) {
   options.camera = SyntheticSensor().camera;
   EXPECT_THROW(System(options, PipelineKind::kSequential, {.localization_only = true}), CheckError);
   EXPECT_EQ(System(options, PipelineKind::kSequential, {.session_name = "a"}).map(), nullptr);
+}
+
+// After black images the camera sees another wall. It stands still at last, until the mapper of the
+// pipeline that never waits has come to the keyframe.
+TEST_P(SystemTest, MapsANewPlaceThatThePriorsLeadTo) {
+  const Wall other(8);
+  System system(Wall::Options(), GetParam());
+  int alone = 0;
+  TrackedFrame tracked;
+  for (int i = 0; i < 1000 && (i < 25 || tracked.prior != PriorUse::kFused); ++i) {
+    const int place = std::min(i, 25);
+    MotionPrior motion{Wall::CamFromWorld(place) * Inverse(Wall::CamFromWorld(std::min(i - 1, 25))),
+                       Time(i - 1)};
+    motion.covariance *= 1e-6;
+    const cv::Mat image = i < 5    ? TheWall().Photograph(place)
+                          : i < 10 ? cv::Mat(480, 640, CV_8UC1, cv::Scalar(0))
+                                   : other.Photograph(place);
+    tracked = system.Track(Time(i), image, Wall::Depth(place), {}, {},
+                           i > 0 ? std::optional(motion) : std::nullopt);
+    ASSERT_EQ(tracked.state, TrackingState::kTracked) << i;
+    alone += tracked.prior == PriorUse::kAlone ? 1 : 0;
+  }
+  EXPECT_EQ(tracked.prior, PriorUse::kFused);
+  EXPECT_GE(alone, 8);
+  if (GetParam() == PipelineKind::kSequential) {
+    EXPECT_EQ(alone, 8) << "five black images and three that are not known";
+  }
+  system.Finish();
+  EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
+  EXPECT_EQ(system.trajectory().size(), system.frames().size());
+  for (const auto& [id, keyframe] : system.map()->keyframes()) {
+    const int place = std::min(static_cast<int>(keyframe.frame->id.value), 25);
+    const Rigid3 error = keyframe.cam_from_world * Inverse(Wall::CamFromWorld(place));
+    EXPECT_LT(error.translation.norm(), 0.005) << place;
+  }
 }
 
 TEST(System, MotionsThatCannotBeUsedAreRefused) {

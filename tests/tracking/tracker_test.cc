@@ -219,6 +219,77 @@ TEST_F(TrackerWithPrior, BlackImagesAreCrossed) {
   EXPECT_LT(found.covariance->trace(), last);
 }
 
+// The camera sees an unknown place when images are good again. It becomes a keyframe that only the
+// prior ties to the others, and the next frame is found by its landmarks.
+TEST_F(TrackerWithPrior, ANewPlaceAfterBlackImagesIsMapped) {
+  Begin();
+  TrackFrames(1, 3);
+  Process(WithPrior(world_.Observe(4).frame));
+  const SyntheticWorld other({.points = 300, .seed = 7}, world_.sensor());
+  std::optional<MapMessage> message;
+  uint32_t index = 5;
+  for (; index <= 20 && !message; ++index) {
+    const auto frame = index < 10 ? Black(index) : WithPrior(other.Observe(index).frame);
+    Tracker::Result result = Process(frame);
+    ASSERT_EQ(result.report.tracked.prior, PriorUse::kAlone) << index;
+    message = std::move(result.message);
+  }
+  EXPECT_EQ(index, 13u) << "the third good image";
+  ASSERT_TRUE(message && std::holds_alternative<KeyframeRequest>(*message));
+  std::vector<LandmarkId> created;
+  const KeyframeId keyframe = InsertKeyframe(made_.map, std::get<KeyframeRequest>(*message),
+                                             world_.sensor(), created, MappingRule::kHullslam);
+  EXPECT_TRUE(IsTied(made_.map, keyframe));
+  map_ = Publish(made_.map);
+  const TrackedFrame found = Process(WithPrior(other.Observe(13).frame)).report.tracked;
+  EXPECT_EQ(found.prior, PriorUse::kFused);
+  EXPECT_EQ(found.from_keyframe->reference, keyframe);
+  EXPECT_EQ(found.odometry->step, OdometryStep::kMeasured);
+  EXPECT_EQ(found.odometry->corrected_at, FrameId(0)) << "the map has not jumped";
+  ExpectNear(found.cam_from_world, SyntheticWorld::CamFromWorld(13), 2e-3);
+}
+
+TEST_F(TrackerWithPrior, ANewPlaceIsNotMappedWhileOnlyLocalising) {
+  Begin();
+  TrackFrames(1, 4);
+  tracker_.LocaliseOnly();
+  const SyntheticWorld other({.points = 300, .seed = 7}, world_.sensor());
+  for (uint32_t i = 5; i < 12; ++i) {
+    EXPECT_FALSE(Process(WithPrior(other.Observe(i).frame)).message) << i;
+  }
+}
+
+// Each step is 0.3 mm too far, with a standard deviation of 1e-12 m. Errors add up only until they
+// contradict the landmarks.
+TEST_F(TrackerWithPrior, ATooConfidentPriorIsDroppedBeforeItDoesHarm) {
+  Begin();
+  TrackFrames(1, 3);
+  int dropped = 0;
+  for (uint32_t i = 4; i < 40; ++i) {
+    auto frame =
+        WithPrior(world_.Observe(i).frame, {Eigen::Quaterniond::Identity(), {0.0003, 0.0, 0.0}});
+    frame->motion->covariance = 1e-24 * MotionPrior().covariance;
+    const TrackedFrame tracked = Process(frame).report.tracked;
+    ASSERT_EQ(tracked.state, TrackingState::kTracked) << i;
+    ExpectNear(tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 5e-3);
+    ASSERT_TRUE(tracked.covariance->allFinite());
+    dropped += tracked.prior == PriorUse::kDropped ? 1 : 0;
+  }
+  EXPECT_GT(dropped, 0);
+}
+
+// Without landmarks, a prior that they have contradicted would lead anywhere.
+TEST_F(TrackerWithPrior, AContradictedPriorIsNotUsedAlone) {
+  Begin();
+  TrackFrames(1, 3);
+  const Rigid3 error(ExpSo3({0.05, 0.0, 0.0}), {0.1, 0.0, 0.0});
+  for (uint32_t i = 4; i < 8; ++i) {
+    ASSERT_EQ(Process(WithPrior(world_.Observe(i).frame, error)).report.tracked.prior,
+              PriorUse::kDropped);
+  }
+  EXPECT_EQ(Process(Black(8)).report.tracked.state, TrackingState::kLost);
+}
+
 // Each step may be wrong by 30 degrees, so after a few of them the image may show anything.
 TEST_F(TrackerWithPrior, AnUncertainPoseIsLost) {
   Begin();

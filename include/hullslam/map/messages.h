@@ -234,7 +234,7 @@ struct TrackedFrame {
   // 1 px from its true pixel.
   double quality = 0.0;
   std::optional<Odometry> odometry = std::nullopt;  // absent before the first pose
-  // With kAlone the state is kTracked, but no landmark was found and no keyframe is made.
+  // With kAlone the state is kTracked, but no landmark was found.
   PriorUse prior = PriorUse::kNone;
 
   // The pose of the camera in the world, when the frame was tracked.

@@ -215,8 +215,7 @@ bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions
   return are_outlines && a.mask->label == b.mask->label && iou >= options.duplicate_class_iou;
 }
 
-// When several masks show the same object, keeps the one with the highest score; ties go to the
-// first.
+// When several masks show the same object, keeps that of the highest score; ties go to the first.
 void RejectDuplicates(const DetectionOptions& options, std::vector<Candidate>& candidates,
                       Rejections& rejections) {
   std::stable_sort(candidates.begin(), candidates.end(),

@@ -212,8 +212,7 @@ Outline UndistortOutline(std::span<const Polygon2> parts, const MaskCamera& came
       outline.contour = std::move(contour);
     }
   }
-  // Rounding moves the points that were added on a straight edge away from the edge; this removes
-  // them.
+  // Rounding moves points that were added on a straight edge off the edge; this removes them.
   outline.hull = SimplifyPolygon(ConvexHull(outline.boundary), 1e-6);
   return outline;
 }
