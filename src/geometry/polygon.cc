@@ -198,9 +198,6 @@ std::vector<Eigen::Vector2d> ClipToBox(std::span<const Eigen::Vector2d> polygon,
   if (box.isEmpty()) {
     return {};
   }
-  if (polygon.size() >= 3 && box.contains(BoundingBox(polygon))) {
-    return {polygon.begin(), polygon.end()};
-  }
   const Eigen::Vector2d& low = box.min();
   const Eigen::Vector2d& high = box.max();
   return Clip(polygon, Corners{low, {high.x(), low.y()}, high, {low.x(), high.y()}});

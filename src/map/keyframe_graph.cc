@@ -168,11 +168,9 @@ void DetachCovisibility(Map& map, KeyframeId id) {
 
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count) {
   std::vector<Covisible> edges = keyframe.covisible;
-  count = std::min(count, edges.size());
-  std::partial_sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(count), edges.end(),
-                    IsMoreShared);
+  std::sort(edges.begin(), edges.end(), IsMoreShared);
   std::vector<KeyframeId> best;
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < std::min(count, edges.size()); ++i) {
     best.push_back(edges[i].keyframe);
   }
   return best;

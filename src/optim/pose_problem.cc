@@ -15,17 +15,6 @@ double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
   return PointChi2(camera, observation.measurement, cam_from_world * observation.point);
 }
 
-// [a]_x m
-inline Eigen::Matrix3d CrossEachColumn(const Eigen::Vector3d& a, const Eigen::Matrix3d& m) {
-  Eigen::Matrix3d product;
-  for (int i = 0; i < 3; ++i) {
-    product(0, i) = a.y() * m(2, i) - a.z() * m(1, i);
-    product(1, i) = a.z() * m(0, i) - a.x() * m(2, i);
-    product(2, i) = a.x() * m(1, i) - a.y() * m(0, i);
-  }
-  return product;
-}
-
 }  // namespace
 
 double PointTerms::Cost(const Rigid3& pose) const {
@@ -61,9 +50,9 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
                 : 1.0;
     const Eigen::Matrix3d point_hessian = weight * linear.Hessian();
     const Eigen::Vector3d point_gradient = weight * linear.Gradient();
-    const Eigen::Matrix3d skew_hessian = CrossEachColumn(point_in_cam, point_hessian);
-    // [x]_x H [x]_x is symmetric, and [x]_x M^T is (M [x]_x^T)^T = -(M [x]_x)^T.
-    by_rotation += CrossEachColumn(point_in_cam, skew_hessian.transpose());
+    const Eigen::Matrix3d skew = Skew(point_in_cam);
+    const Eigen::Matrix3d skew_hessian = skew * point_hessian;
+    by_rotation -= skew_hessian * skew;
     mixed += skew_hessian;
     by_translation += point_hessian;
     gradient.head<3>() += point_in_cam.cross(point_gradient);

@@ -276,8 +276,8 @@ std::optional<Tracker::Result> Tracker::DeadReckon(const std::shared_ptr<const F
   last_.motion.reset();
   last_.velocity.reset();
   lost_since_.reset();
-  const size_t with_depth = KeypointsByDepth(frame->features).size();
-  const bool is_rich = with_depth >= static_cast<size_t>(options_.min_initial_points);
+  const bool is_rich =
+      KeypointsByDepth(frame->features).size() >= static_cast<size_t>(options_.min_initial_points);
   lost_frames_ = is_rich ? lost_frames_ + 1 : 0;
   Result result = MakeResult(frame, TrackingState::kTracked);
   TrackedFrame& tracked = result.report.tracked;
@@ -314,9 +314,9 @@ Tracker::Result Tracker::Accept(Found found, const std::shared_ptr<const Frame>&
   if (found.is_relocalised) {
     relocalised_at_ = as_read->timestamp;
   }
-  const int credit =
-      found.prior == PriorUse::kFused ? 1 : (found.prior == PriorUse::kDropped ? -1 : 0);
-  prior_credit_ = std::clamp(prior_credit_ + credit, -kMostCredit, kMostCredit);
+  prior_credit_ += found.prior == PriorUse::kFused ? 1 : 0;
+  prior_credit_ -= found.prior == PriorUse::kDropped ? 1 : 0;
+  prior_credit_ = std::clamp(prior_credit_, -kMostCredit, kMostCredit);
   initialiser_.Forget();
   std::shared_ptr<const Frame> frame = std::move(found.corrected.frame);
   const LocalTracking& tracking = found.tracking;
