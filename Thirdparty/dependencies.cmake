@@ -7,7 +7,7 @@ find_package(Ceres 2.1 REQUIRED)
 find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; needs GMP and MPFR
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
-find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution, Beast
+find_package(Boost 1.74 REQUIRED)  # headers only: CRC, matching, Student's t-distribution, Beast
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # only the header of libxxhash-dev 0.8 is used
 if(HULLSLAM_CORE_ONLY)
   return()

@@ -6,7 +6,6 @@
 //   07_robot SEQUENCE ODOMETRY MAP
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "hullslam/map_files/map_file.h"
@@ -37,9 +36,9 @@ void Run(const char* folder, const char* odometry, const char* map_file) {
       std::printf("%.3f s: %s\n", report.tracked.timestamp, ToString(event.kind).data());
     }
   });
-  std::optional<hullslam::MapSaver> saver;
-  saver.emplace(map_file, hullslam::MapSettingsOf(settings), 5.0,
-                [](const std::string& why) { std::fprintf(stderr, "%s\n", why.c_str()); });
+  auto saver = std::make_unique<hullslam::MapSaver>(
+      map_file, hullslam::MapSettingsOf(settings), 5.0,
+      [](const std::string& why) { std::fprintf(stderr, "%s\n", why.c_str()); });
   const size_t half = sequence.frames.size() / 2;
   int by_wheels = 0;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {

@@ -181,6 +181,7 @@ TEST_F(LastFrameTest, TheOdometryKeepsItsUnitOfLength) {
 
 TEST_F(LastFrameTest, PriorsOfSuccessiveFramesAddUp) {
   Frame frame = *MakeFrame(2, 1);
+  frame.motion.reset();
   EXPECT_FALSE(MotionAhead(last_, frame).has_value()) << "no prior";
   frame.motion = MotionPrior{Shift(0.2), 0.1};
   last_.ahead = MotionAhead(last_, frame);
