@@ -28,8 +28,10 @@ std::vector<int> AssignMinimumCost(const Eigen::MatrixXd& cost, double max_cost)
       }
     }
   }
-  std::vector<Graph::vertex_descriptor> partner(boost::num_vertices(graph));
-  boost::maximum_weighted_matching(graph, partner.data());
+  std::vector<Graph::vertex_descriptor> partner(boost::num_vertices(graph), Graph::null_vertex());
+  if (boost::num_edges(graph) > 0) {  // without edges, Boost 1.74 has an overflow
+    boost::maximum_weighted_matching(graph, partner.data());
+  }
   std::vector<int> column_of(rows, -1);
   for (size_t row = 0; row < rows; ++row) {
     if (partner[row] != Graph::null_vertex()) {
