@@ -45,8 +45,8 @@ bool DepthsAgree(const Map& corrected, const Sensor& sensor, const Loop& loop) {
 size_t LandmarksNeededForJoin(const Map& corrected, const Sensor& sensor, const Loop& loop,
                               size_t least) {
   constexpr uint32_t kNearFrames = 5;
-  const auto [first, last] = std::minmax(FrameIdOf(corrected, loop.query).value,
-                                         FrameIdOf(corrected, loop.candidate).value);
+  const auto [first, last] = std::minmax(
+      {FrameIdOf(corrected, loop.query).value, FrameIdOf(corrected, loop.candidate).value});
   if (last - first > kNearFrames || sensor.IsMonocular()) {
     return 3 * least;
   }
