@@ -440,9 +440,8 @@ class Patrol {
       }
     });
     fmt::print(
-        "landmarks at the end: {}; of points as they look in each light (always: in the first): "
-        "{}; "
-        "{} second ones, {} not where the point is, {} of no point\n",
+        "landmarks at the end: {}; by the light in which they look like their point: {}; {} second "
+        "ones, {} not where the point is, {} of no point\n",
         map->landmarks().size(), fmt::join(right, ", "), again, left, nothing);
   }
 

@@ -21,8 +21,8 @@ class FeatureGrid {
   // 65535 keypoints.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
-  // Sorts by these positions, one per keypoint, in the box from 0 to `box_max`. A
-  // GridSearch compares them too.
+  // Sorts by these positions, one per keypoint, in the box from 0 to `box_max`. GridSearch compares
+  // them too.
   FeatureGrid(std::span<const Keypoint> keypoints, std::vector<Eigen::Vector2f> positions,
               const Eigen::Vector2f& box_max);
 
