@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/eval/ate.h"
 
+#include <ceres/normal_prior.h>
+#include <ceres/numeric_diff_cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -147,6 +151,45 @@ bool AreByChance(const Trajectory& reference, const Trajectory& estimate, double
           paired_span < kLeast * SpanOf(estimate));
 }
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kMaxGap = 0.1;  // s, of true poses that are interpolated
+// The unit of the clock, s. Ceres differentiates with a step of 1.5e-8, which is 1.5 ms in it.
+constexpr double kClockUnit = 1e5;
+
+std::optional<Rigid3> TruePose(const Trajectory& reference, double timestamp) {
+  return InterpolatePose(reference, timestamp, kMaxGap);
+}
+
+// The error of a pose by the six parameters of Retract, for steps of the alignment and of the
+// truth's offset. As a residual it is in standard deviations.
+struct PoseError {
+  Vector6d Of(const Vector6d& world, const Vector6d& mount, double clock) const {
+    auto truth = TruePose(reference, timestamp + clock);
+    if (!truth) {  // at the ends
+      truth = TruePose(reference, timestamp);
+    }
+    return Difference(cam_from_world * Retract(world_from_truth, world),
+                      Retract(Rigid3(), mount) * Inverse(*truth));
+  }
+
+  bool operator()(const double* world, const double* mount, const double* clock,
+                  double* residual) const {
+    Eigen::Map<Vector6d> whitened(residual);
+    whitened = Of(Eigen::Map<const Vector6d>(world), Eigen::Map<const Vector6d>(mount),
+                  kClockUnit * *clock);
+    covariance.llt().matrixL().solveInPlace(whitened);
+    return true;
+  }
+
+  const Trajectory& reference;
+  double timestamp = 0.0;  // s, of the estimate
+  Rigid3 cam_from_world;
+  Matrix6d covariance;           // of the estimate and of the truth
+  Rigid3 world_from_truth = {};  // before the step
+};
+
 }  // namespace
 
 AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
@@ -192,66 +235,76 @@ AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
 
 NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
                         std::span<const Eigen::Matrix<double, 6, 6>> covariances,
-                        const TruthSigma& truth_sigma) {
-  Check(truth_sigma.translation >= 0.0 && truth_sigma.rotation >= 0.0,
+                        const TruthErrors& of_truth) {
+  Check(of_truth.translation >= 0.0 && of_truth.rotation >= 0.0,
         "a standard deviation of the true trajectory is below 0");
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
-  constexpr double kMaxGap = 0.1;  // s
-  constexpr int kIterations = 10;
-  struct Pair {
-    Rigid3 cam_from_truth;
-    Rigid3 cam_from_world;
-    Eigen::LLT<Matrix6d> covariance;
-  };
-  Vector6d of_truth;
-  of_truth << Eigen::Vector3d::Constant(truth_sigma.rotation),
-      Eigen::Vector3d::Constant(truth_sigma.translation);
-  std::vector<Pair> pairs;
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(of_truth.rotation),
+      Eigen::Vector3d::Constant(of_truth.translation);
+  std::vector<PoseError> pairs;
   for (size_t i = 0; i < estimate.size(); ++i) {
-    const auto truth = InterpolatePose(reference, estimate[i].timestamp, kMaxGap);
     // A pose without covariance is the first one, which the others are relative to.
-    if (truth && Eigen::LLT<Matrix6d>(covariances[i]).info() == Eigen::Success) {
-      const Matrix6d of_both = covariances[i] + Matrix6d(of_truth.cwiseAbs2().asDiagonal());
-      pairs.push_back({Inverse(*truth), Inverse(estimate[i].world_from_cam), of_both.llt()});
+    if (TruePose(reference, estimate[i].timestamp) &&
+        Eigen::LLT<Matrix6d>(covariances[i]).info() == Eigen::Success) {
+      pairs.push_back({.reference = reference,
+                       .timestamp = estimate[i].timestamp,
+                       .cam_from_world = Inverse(estimate[i].world_from_cam),
+                       .covariance = covariances[i] + Matrix6d(sigma.cwiseAbs2().asDiagonal())});
     }
   }
-  NeesResult result{.poses = pairs.size(), .ratio = {}, .rotation = {}, .translation = {}};
+  NeesResult result{
+      .poses = pairs.size(), .ratio = {}, .rotation = {}, .translation = {}, .offset = {}};
   if (pairs.empty()) {
     return result;
   }
-  // Gauss-Newton on a step of the alignment, which moves d by the transform of InAxesOf.
-  Rigid3 world_from_truth = Inverse(pairs.front().cam_from_world) * pairs.front().cam_from_truth;
-  const auto error = [&](const Pair& pair) {
-    return Difference(pair.cam_from_world * world_from_truth, pair.cam_from_truth);
-  };
-  for (int i = 0; i < kIterations; ++i) {
-    Matrix6d hessian = Matrix6d::Zero();
-    Vector6d gradient = Vector6d::Zero();
-    for (const Pair& pair : pairs) {
-      const Matrix6d by_step = Adjoint(pair.cam_from_world);
-      hessian += by_step.transpose() * pair.covariance.solve(by_step);
-      gradient += by_step.transpose() * pair.covariance.solve(error(pair));
-    }
-    world_from_truth = Retract(world_from_truth, hessian.ldlt().solve(gradient));
+  // Ceres optimises steps of the alignment, of the mount and of the clock.
+  const Rigid3 start = Inverse(pairs.front().cam_from_world) *
+                       Inverse(*TruePose(reference, pairs.front().timestamp));
+  Vector6d world = Vector6d::Zero();
+  Vector6d mount = Vector6d::Zero();
+  double clock = 0.0;
+  ceres::Problem problem;
+  for (PoseError& pair : pairs) {
+    pair.world_from_truth = start;
+    problem.AddResidualBlock(
+        new ceres::NumericDiffCostFunction<PoseError, ceres::CENTRAL, 6, 6, 6, 1>(
+            &pair, ceres::DO_NOT_TAKE_OWNERSHIP),
+        nullptr, world.data(), mount.data(), &clock);
   }
+  // Without rotation the translation of the mount is not determined, so 1 m and 1 rad are its
+  // weak priors.
+  problem.AddResidualBlock(new ceres::NormalPrior(Matrix6d::Identity(), mount), nullptr,
+                           mount.data());
+  problem.SetParameterLowerBound(&clock, 0, -kMaxGap / kClockUnit);
+  problem.SetParameterUpperBound(&clock, 0, kMaxGap / kClockUnit);
+  if (!of_truth.has_offset) {
+    problem.SetParameterBlockConstant(mount.data());
+    problem.SetParameterBlockConstant(&clock);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
   std::vector<double> ratios;
   std::vector<double> rotations;
   std::vector<double> translations;
-  for (const Pair& pair : pairs) {
-    const Vector6d off = error(pair);
-    const Matrix6d covariance = pair.covariance.reconstructedMatrix();
+  for (const PoseError& pair : pairs) {
+    const Vector6d off = pair.Of(world, mount, kClockUnit * clock);
     const auto of_part = [&](Eigen::Index first) {
       const Eigen::Vector3d part = off.segment<3>(first);
-      return part.dot(covariance.block<3, 3>(first, first).llt().solve(part)) / 3.0;
+      return part.dot(pair.covariance.block<3, 3>(first, first).llt().solve(part)) / 3.0;
     };
-    ratios.push_back(off.dot(pair.covariance.solve(off)) / 6.0);
+    ratios.push_back(off.dot(pair.covariance.llt().solve(off)) / 6.0);
     rotations.push_back(of_part(0));
     translations.push_back(of_part(3));
   }
   result.ratio = SummarizeErrors(std::move(ratios));
   result.rotation = SummarizeErrors(std::move(rotations));
   result.translation = SummarizeErrors(std::move(translations));
+  if (of_truth.has_offset) {
+    result.offset = {.cam_from_body = Retract(Rigid3(), mount), .clock_ahead = kClockUnit * clock};
+  }
   return result;
 }
 

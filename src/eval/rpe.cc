@@ -94,7 +94,7 @@ std::string DescribeSwappedRotations(const Trajectory& reference, const Trajecto
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
                                     const AteOptions& options,
                                     std::span<const Eigen::Matrix<double, 6, 6>> covariances,
-                                    const TruthSigma& truth_sigma) {
+                                    const TruthErrors& of_truth) {
   TrajectoryErrors errors{.options = options, .ate = EvaluateAte(reference, estimate, options)};
   if (!errors.ate.ok()) {
     return errors;
@@ -104,7 +104,7 @@ TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajector
                               .max_difference = options.max_difference};
   errors.rpe = EvaluateRpe(reference, estimate, motions);
   if (!covariances.empty()) {
-    errors.nees = EvaluateNees(reference, estimate, covariances, truth_sigma);
+    errors.nees = EvaluateNees(reference, estimate, covariances, of_truth);
   }
   for (const std::string& warning :
        {DescribeMissingPairs(errors.ate),

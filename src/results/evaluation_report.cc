@@ -120,6 +120,10 @@ Json ToJson(const TruthEvaluation& evaluation) {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
+double TurnOf(const TruthOffset& offset) {
+  return kDegrees * LogSo3(offset.cam_from_body.rotation).norm();
+}
+
 Json ToJson(const BodyScore& score) {
   return {{"least", score.least},
           {"truths", score.truths},
@@ -389,6 +393,11 @@ std::string TrajectoryErrorsJson(const TrajectoryErrors& errors) {
                            {"rotation_over_3_mean", errors.nees->rotation.mean},
                            {"translation_over_3_mean", errors.nees->translation.mean},
                            {"poses", errors.nees->poses}};
+    if (const auto& offset = errors.nees->offset) {
+      json["truth_offset"] = {{"rotation_deg", TurnOf(*offset)},
+                              {"translation_m", offset->cam_from_body.translation.norm()},
+                              {"clock_ahead_s", offset->clock_ahead}};
+    }
   }
   return json.dump(2);
 }
@@ -441,6 +450,12 @@ std::string TrajectoryErrorsText(const TrajectoryErrors& errors) {
         "{:<12} {:.2f} mean of the rotation, {:.2f} of the position\n",
         "NEES / 6", errors.nees->ratio.mean, errors.nees->ratio.median, errors.nees->poses,
         "NEES / 3", errors.nees->rotation.mean, errors.nees->translation.mean);
+    if (const auto& offset = errors.nees->offset) {
+      text +=
+          fmt::format("{:<12} body {:.2f} deg and {:.4f} m from the camera, clock {:.4f} s ahead\n",
+                      "of the truth", TurnOf(*offset), offset->cam_from_body.translation.norm(),
+                      offset->clock_ahead);
+    }
   }
   return text;
 }

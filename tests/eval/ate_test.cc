@@ -282,7 +282,7 @@ TEST(Nees, IsTheSquaredErrorInStandardDeviations) {
 // The same errors are in the true trajectory, and the estimate claims to be almost free of them.
 TEST(Nees, TakesTheErrorOfTheTruthIntoAccount) {
   const Trajectory exact = Helix(120);
-  const TruthSigma sigma = {.translation = 0.01, .rotation = 0.005};
+  const TruthErrors sigma = {.translation = 0.01, .rotation = 0.005};
   Trajectory reference;
   for (size_t i = 0; i < exact.size(); ++i) {
     Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();
@@ -299,6 +299,46 @@ TEST(Nees, TakesTheErrorOfTheTruthIntoAccount) {
   EXPECT_NEAR(nees.rotation.mean, 1.0 / 6.0, 0.01);
   EXPECT_NEAR(nees.translation.mean, 1.0 / 6.0, 0.01);
   EXPECT_THROW(EvaluateNees(reference, exact, covariances, {.translation = -1.0}), std::exception);
+}
+
+// The body of the true trajectory is turned and moved against the camera, and its clock is ahead.
+TEST(Nees, FindsTheConstantErrorsOfTheTruth) {
+  Trajectory exact;
+  for (int i = 0; i < 300; ++i) {
+    const double t = 0.02 * i;  // after a time of this century, which has few digits left
+    exact.push_back(
+        {1.3e9 + t, Rigid3(ExpSo3({0.3 * std::sin(t), 0.2 * std::cos(1.7 * t), 0.1 * t}),
+                           {std::sin(1.3 * t), std::cos(0.9 * t), 0.2 * t})});
+  }
+  const Rigid3 cam_from_body(ExpSo3({0.02, -0.01, 0.015}), {0.03, -0.02, 0.01});
+  constexpr double kAhead = 0.004;
+  Trajectory reference;
+  for (const StampedPose& pose : exact) {
+    reference.push_back({pose.timestamp + kAhead, pose.world_from_cam * cam_from_body});
+  }
+  const std::vector<Eigen::Matrix<double, 6, 6>> covariances(
+      exact.size(), 1e-6 * Eigen::Matrix<double, 6, 6>::Identity());
+  EXPECT_FALSE(EvaluateNees(reference, exact, covariances).offset);
+  EXPECT_GT(EvaluateNees(reference, exact, covariances).ratio.mean, 10.0);
+  const NeesResult nees = EvaluateNees(reference, exact, covariances, {.has_offset = true});
+  EXPECT_LT(nees.ratio.mean, 0.01);
+  ASSERT_TRUE(nees.offset);
+  EXPECT_LT(Difference(nees.offset->cam_from_body, cam_from_body).norm(), 1e-3);
+  EXPECT_NEAR(nees.offset->clock_ahead, kAhead, 1e-4);
+}
+
+// On a straight way nothing shows where the body is on the camera; the result stays finite.
+TEST(Nees, FindsNoOffsetThatNothingShows) {
+  Trajectory straight;
+  for (int i = 0; i < 20; ++i) {
+    straight.push_back({0.1 * i, Rigid3(Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0})});
+  }
+  const std::vector<Eigen::Matrix<double, 6, 6>> covariances(
+      straight.size(), 1e-6 * Eigen::Matrix<double, 6, 6>::Identity());
+  const NeesResult nees = EvaluateNees(straight, straight, covariances, {.has_offset = true});
+  EXPECT_LT(nees.ratio.max, 1e-9);
+  ASSERT_TRUE(nees.offset);
+  EXPECT_LT(nees.offset->cam_from_body.translation.norm(), 1e-6);
 }
 
 }  // namespace

@@ -61,6 +61,12 @@ struct AteResult {
 AteResult EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options = {});
 
+// Constant errors of a true trajectory.
+struct TruthOffset {
+  Rigid3 cam_from_body;      // the camera from the body whose poses the trajectory has
+  double clock_ahead = 0.0;  // s, by which its clock is ahead of that of the estimate
+};
+
 // Whether the covariances of poses are honest, by the normalised estimation error squared (NEES):
 // d' C^-1 d, where d is the error of the pose by the six parameters of Retract and C its
 // covariance. Its mean is 6 if the covariances are right, and larger if they are too small.
@@ -69,13 +75,17 @@ struct NeesResult {
   ErrorStatistics ratio;        // of NEES / 6
   ErrorStatistics rotation;     // of NEES / 3 of the rotation alone
   ErrorStatistics translation;  // the same of the position of the camera
+  std::optional<TruthOffset> offset = std::nullopt;  // with TruthErrors::has_offset
 };
 
-// The standard deviations of the errors of a true trajectory itself, such as those of a motion
-// capture system, on each axis of the camera. Not below 0.
-struct TruthSigma {
-  double translation = 0.0;  // m
-  double rotation = 0.0;     // rad
+// The errors of a true trajectory itself, such as one of a motion capture system.
+struct TruthErrors {
+  // Standard deviations on each axis of the camera, m and rad. Not below 0.
+  double translation = 0.0;
+  double rotation = 0.0;
+  // Whether its body may be mounted on the camera in another way than it says, and its clock may be
+  // off, by up to 0.1 s. Both errors are constant, and are found together with the alignment.
+  bool has_offset = false;
 };
 
 // `covariances`: one per pose of the estimate, of TrackedFrame::covariance; those that cannot be
@@ -84,7 +94,7 @@ struct TruthSigma {
 // estimate plus that of the true pose: C + diag(rotation^2 I, translation^2 I).
 NeesResult EvaluateNees(const Trajectory& reference, const Trajectory& estimate,
                         std::span<const Eigen::Matrix<double, 6, 6>> covariances,
-                        const TruthSigma& truth_sigma = {});
+                        const TruthErrors& of_truth = {});
 
 // Describes pairs that are fewer than the stamps allow: less than nine tenths of
 // AteResult::expected_pairs. Then the stamps of one side have a wrong rate, or the reference has

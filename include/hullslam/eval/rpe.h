@@ -53,10 +53,10 @@ struct TrajectoryErrors {
   std::optional<NeesResult> nees = std::nullopt;  // absent without covariances
 };
 
-// `covariances` and `truth_sigma`: as in EvaluateNees, or empty.
+// `covariances` and `of_truth`: as in EvaluateNees, or empty.
 TrajectoryErrors EvaluateTrajectory(const Trajectory& reference, const Trajectory& estimate,
                                     const AteOptions& options,
                                     std::span<const Eigen::Matrix<double, 6, 6>> covariances = {},
-                                    const TruthSigma& truth_sigma = {});
+                                    const TruthErrors& of_truth = {});
 
 }  // namespace hullslam

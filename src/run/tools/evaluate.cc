@@ -45,6 +45,7 @@ struct TrajectoryArguments {
   std::string estimate;
   AteOptions ate;
   std::array<double, 2> truth_sigma = {0.0, 0.0};  // m, degrees
+  bool fit_mount = false;
   bool json = false;
 };
 
@@ -99,6 +100,8 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
       "--truth-sigma", arguments.truth_sigma,
       "M,DEG: standard deviations of the true trajectory's own errors, for NEES (default: 0,0)");
   ExpectNumber(*truth_sigma->delimiter(','), 0.0, 180.0);
+  command->add_flag("--fit-mount", arguments.fit_mount,
+                    "for NEES, also fit how the true body is mounted on the camera, and its clock");
   command->add_flag("--json", arguments.json, "print the report as JSON");
   return command;
 }
@@ -109,16 +112,13 @@ void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
   const auto [reference, estimate] = ReadBoth(arguments);
   const TrajectoryErrors errors = EvaluateTrajectory(
       reference.poses, estimate.poses, arguments.ate, estimate.covariances,
-      {arguments.truth_sigma[0], arguments.truth_sigma[1] * std::numbers::pi / 180.0});
+      {arguments.truth_sigma[0], arguments.truth_sigma[1] * std::numbers::pi / 180.0,
+       arguments.fit_mount});
   if (!errors.ate.ok()) {
     throw InputError(arguments.estimate + ": " + errors.ate.failure);
   }
   PrintWarnings(errors.warnings);
-  if (arguments.json) {
-    Print("{}\n", TrajectoryErrorsJson(errors));
-  } else {
-    Print("{}", TrajectoryErrorsText(errors));
-  }
+  Print("{}", arguments.json ? TrajectoryErrorsJson(errors) + '\n' : TrajectoryErrorsText(errors));
 }
 
 // The alignment with the ground truth. Without a summary.json the unit of length is the metre.
