@@ -15,8 +15,9 @@ namespace hullslam {
 namespace {
 
 // Distributes the features over the levels. Their number falls by the scale factor from level to
-// level, and the top level gets the rest.
-std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
+// level, and the top level gets the rest. If `halves_levels`, every other level gets those of two
+// and a quarter more, because a corner that one level alone shows is then missed.
+std::vector<size_t> LevelQuotas(const FeatureOptions& options, bool halves_levels) {
   const double ratio = 1.0 / options.scale_factor;
   double wanted =
       options.feature_count * (1.0 - ratio) / (1.0 - std::pow(ratio, options.level_count));
@@ -29,12 +30,11 @@ std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
     wanted *= ratio;
   }
   quotas.push_back(static_cast<size_t>(left));
+  for (size_t l = 1; halves_levels && l < quotas.size(); l += 2) {
+    quotas[l - 1] = 5 * (quotas[l - 1] + quotas[l]) / 4;
+  }
   return quotas;
 }
-
-}  // namespace
-
-namespace {
 
 // Extracts the features of one level. Keeps its buffers from image to image.
 class LevelExtractor {
@@ -166,21 +166,21 @@ bool IsIgnored(const cv::Mat& ignored, const Eigen::Vector2f& raw) {
 }
 
 struct FeatureExtractor::Impl {
-  explicit Impl(const FeatureOptions& options)
+  Impl(const FeatureOptions& options, bool halves_levels)
       : levels(ScaleLevels::Create(options.level_count, options.scale_factor)), pyramid(levels) {
-    const std::vector<size_t> quotas = LevelQuotas(options);
-    for (int l = 0; l < options.level_count; ++l) {
-      extractors.emplace_back(options, l, quotas[static_cast<size_t>(l)]);
+    const std::vector<size_t> quotas = LevelQuotas(options, halves_levels);
+    for (size_t l = 0; l < quotas.size(); l += halves_levels ? 2 : 1) {
+      extractors.emplace_back(options, static_cast<int>(l), quotas[l]);
     }
   }
 
   ScaleLevels levels;
   ImagePyramid pyramid;
-  std::vector<LevelExtractor> extractors;  // one per level
+  std::vector<LevelExtractor> extractors;  // one per level that has features
 };
 
-FeatureExtractor::FeatureExtractor(const FeatureOptions& options)
-    : impl_(std::make_unique<Impl>(options)) {}
+FeatureExtractor::FeatureExtractor(const FeatureOptions& options, bool halves_levels)
+    : impl_(std::make_unique<Impl>(options, halves_levels)) {}
 FeatureExtractor::~FeatureExtractor() = default;
 FeatureExtractor::FeatureExtractor(FeatureExtractor&&) noexcept = default;
 FeatureExtractor& FeatureExtractor::operator=(FeatureExtractor&&) noexcept = default;

@@ -26,7 +26,9 @@ bool IsIgnored(const cv::Mat& ignored, const Eigen::Vector2f& raw);
 // per thread.
 class FeatureExtractor {
  public:
-  explicit FeatureExtractor(const FeatureOptions& options);
+  // If `halves_levels`, only every other level of the pyramid has features, and those of two: a
+  // keypoint of any level is then found on its own level or on a neighbouring one, in less time.
+  explicit FeatureExtractor(const FeatureOptions& options, bool halves_levels = false);
   ~FeatureExtractor();
   FeatureExtractor(FeatureExtractor&&) noexcept;
   FeatureExtractor& operator=(FeatureExtractor&&) noexcept;

@@ -2,23 +2,30 @@
 #include "frame/coarse_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 namespace hullslam {
 namespace {
 
 constexpr double kNearest = 4.0;  // baselines
-constexpr int kBlock = 5;         // px; side of the compared blocks
+// The images are compared in half of their columns, which measure depths, and a quarter of their
+// rows.
+constexpr int kShrinkX = 2;
+constexpr int kShrinkY = 4;
+constexpr int kBlock = 3;     // px; side of the compared blocks
+constexpr int kSpeckle = 30;  // px; smaller spots of other disparities are left out
 // Penalties of Hirschmüller for disparities of neighbours that differ by one and by more, per pixel
 // of a block; the factors are those that OpenCV's documentation recommends.
 constexpr int kSmallStep = 8 * kBlock * kBlock;
 constexpr int kLargeStep = 32 * kBlock * kBlock;
 
-// The number of disparities that must be tried in the images of half the size; a multiple of 16, as
+// The number of disparities that must be tried in the smaller images; a multiple of 16, as
 // OpenCV wants. One in a hundred keypoints may be matched wrongly, and an object without keypoints
 // may be nearer than those, by a quarter. With few keypoints, all distances are tried.
 int DisparityCount(const PinholeCamera& camera, std::span<const float> disparities) {
@@ -32,22 +39,21 @@ int DisparityCount(const PinholeCamera& camera, std::span<const float> dispariti
     std::nth_element(known.begin(), last, known.end());
     largest = std::min(largest, kNearer * static_cast<double>(*last));
   }
-  return 16 * std::max(1, static_cast<int>(std::ceil(0.5 * largest / 16.0)));
+  return 16 * std::max(1, static_cast<int>(std::ceil(largest / (16.0 * kShrinkX))));
 }
 
-cv::Mat HalfSize(const cv::Mat& image) {
-  cv::Mat half;
-  cv::resize(image, half, {}, 0.5, 0.5, cv::INTER_AREA);
-  return half;
+cv::Mat Shrunk(const cv::Mat& image) {
+  cv::Mat shrunk;
+  cv::resize(image, shrunk, {image.cols / kShrinkX, image.rows / kShrinkY}, 0, 0, cv::INTER_AREA);
+  return shrunk;
 }
 
-// The part of the images of half the size that is needed for the region: disparities are found from
-// the column `count` on.
-cv::Rect PartOf(const cv::Rect& region, int count, const cv::Size& half) {
-  const int left = std::max(0, region.x / 2 - count);
-  const int top = region.y / 2;
-  return cv::Rect(left, top, (region.br().x + 1) / 2 - left, (region.br().y + 1) / 2 - top) &
-         cv::Rect({0, 0}, half);
+// The part of the smaller images that is needed for the region: disparities are found from the
+// column `count` on.
+cv::Rect PartOf(const cv::Rect& region, int count, const cv::Size& size) {
+  const int left = std::max(0, region.x / kShrinkX - count);
+  const cv::Point end((region.br().x - 1) / kShrinkX + 1, (region.br().y - 1) / kShrinkY + 1);
+  return cv::Rect({left, region.y / kShrinkY}, end) & cv::Rect({0, 0}, size);
 }
 
 // The rows `first` to `last` - 1 of the part.
@@ -58,12 +64,13 @@ struct Band {
 
 class CoarseMatcher {
  public:
+  // Both images are the smaller ones.
   CoarseMatcher(const cv::Mat& left, const cv::Mat& right, const PinholeCamera& camera,
                 const CoarseDepthPlace& place)
-      : left_(HalfSize(left)),
-        right_(HalfSize(right)),
+      : left_(left),
+        right_(right),
         bf_(camera.bf),
-        scale_(static_cast<double>(left.cols) / static_cast<double>(left_.cols) / kPerPixel),
+        scale_(static_cast<double>(camera.width) / static_cast<double>(left.cols) / kPerPixel),
         region_(place.region),
         count_(DisparityCount(camera, place.disparities)),
         part_(PartOf(place.region, count_, left_.size())) {}
@@ -73,12 +80,9 @@ class CoarseMatcher {
     if (part_.width <= count_ || part_.height < kBlock) {
       return {};
     }
-    const int half = part_.height < 2 * kLeastBand ? part_.height : part_.height / 2;
-    std::vector<Band> bands{{0, half}};
-    if (half < part_.height) {
-      bands.push_back({half, part_.height});
-    }
-    return bands;
+    const int half = part_.height / 2;
+    return half < kLeastBand ? std::vector<Band>{{0, part_.height}}
+                             : std::vector<Band>{{0, half}, {half, part_.height}};
   }
 
   void Match(const Band& band, cv::Mat& depth) const {
@@ -87,18 +91,23 @@ class CoarseMatcher {
     const cv::Rect rows(part_.x, part_.y + begin, part_.width, end - begin);
     // OpenCV's modes with threads of their own wait for cores that others use.
     const auto matcher = cv::StereoSGBM::create(0, count_, kBlock, kSmallStep, kLargeStep, 1, 31,
-                                                10, 60, 2, cv::StereoSGBM::MODE_SGBM);
+                                                10, kSpeckle, 2, cv::StereoSGBM::MODE_SGBM);
     cv::Mat disparities;
     matcher->compute(left_(rows), right_(rows), disparities);
-    const int last_row = left_.rows - 1;
+    const cv::Range columns(region_.x, region_.br().x);
+    int last = -1;
     for (int y = region_.y; y < region_.br().y; ++y) {
-      const int row = std::min(y / 2, last_row) - part_.y;
+      const int row = std::min(y / kShrinkY, left_.rows - 1) - part_.y;
       if (row < band.first || row >= band.last) {
         continue;
       }
       const auto* const found = disparities.ptr<int16_t>(row - begin);
-      for (int x = region_.x; x < region_.br().x; ++x) {
-        const int disparity = found[std::min(x / 2, part_.br().x - 1) - part_.x];
+      if (std::exchange(last, row) == row) {
+        depth(cv::Range(y - 1, y), columns).copyTo(depth(cv::Range(y, y + 1), columns));
+        continue;
+      }
+      for (int x = columns.start; x < columns.end; ++x) {
+        const int disparity = found[std::min(x / kShrinkX, part_.br().x - 1) - part_.x];
         depth.at<float>(y, x) =
             disparity > 0 ? static_cast<float>(bf_ / (scale_ * disparity)) : 0.0F;
       }
@@ -107,18 +116,18 @@ class CoarseMatcher {
 
  private:
   static constexpr double kPerPixel = 16.0;  // units of OpenCV's disparities
-  static constexpr int kLeastBand = 32;      // rows of half the size
+  static constexpr int kLeastBand = 16;      // rows of the smaller images
   // Rows above a band from which the costs of its first row are gathered. The penalties let a row
   // depend on few rows above it.
-  static constexpr int kOverlap = 8;
+  static constexpr int kOverlap = 4;
 
-  cv::Mat left_;  // of half the size
+  cv::Mat left_;  // the smaller images
   cv::Mat right_;
   double bf_;
   double scale_;  // px of the left image per unit of OpenCV's disparities
   cv::Rect region_;
   int count_;      // disparities
-  cv::Rect part_;  // of the images of half the size
+  cv::Rect part_;  // of the smaller images
 };
 
 }  // namespace
@@ -126,7 +135,9 @@ class CoarseMatcher {
 cv::Mat CoarseDepth(const cv::Mat& left, const cv::Mat& right, const PinholeCamera& camera,
                     const CoarseDepthPlace& place, TaskRunner& runner) {
   cv::Mat depth = cv::Mat::zeros(left.size(), CV_32FC1);
-  const CoarseMatcher matcher(left, right, camera, place);
+  std::array<cv::Mat, 2> smaller;
+  runner.Run(2, [&](size_t i) { smaller[i] = Shrunk(i == 0 ? left : right); });
+  const CoarseMatcher matcher(smaller[0], smaller[1], camera, place);
   const std::vector<Band> bands = matcher.Bands();
   runner.Run(bands.size(), [&](size_t i) { matcher.Match(bands[i], depth); });
   return depth;

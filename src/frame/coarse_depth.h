@@ -16,7 +16,7 @@ struct CoarseDepthPlace {
 };
 
 // The depth image of a rectified pair, CV_32FC1, m, 0 where it is unknown and outside of the
-// region; it has the size of the left image. It is found on images of half the size by semi-global
+// region; it has the size of the left image. It is found on smaller images by semi-global
 // matching (Hirschmüller 2008, in OpenCV), so details of few pixels are lost: it is for the
 // surfaces of objects, whose keypoints are too few, and not for keypoints. The disparities of the
 // keypoints say how near things are. Things nearer than four baselines are not found.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "camera/fit_depth.h"
 #include "frame/coarse_depth.h"
@@ -77,10 +78,9 @@ class NoDepth : public DepthSource {
 
   Features Extract(FeatureExtractor& extractor, const ImageInput& image,
                    const std::array<cv::Mat, 2>& ignored, TaskRunner& runner) override {
-    Features features;
-    features.extracted = extractor.Extract(image.grey, runner, ignored[0]);
-    features.depths.resize(features.extracted.keypoints.size());
-    return features;
+    ExtractedFeatures extracted = extractor.Extract(image.grey, runner, ignored[0]);
+    std::vector<float> depths(extracted.keypoints.size());
+    return {.extracted = std::move(extracted), .depths = std::move(depths)};
   }
 
   cv::Mat DepthIn(const cv::Rect& /*region*/, const ImageInput& /*image*/,

@@ -51,10 +51,7 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
 // The pixels that are 0 in the mask of all images, and those beyond the largest angle of a wide
 // lens; empty if there are none.
 cv::Mat UnusedPixels(const PinholeCamera& camera, const cv::Mat& mask_all) {
-  cv::Mat unused;
-  if (!mask_all.empty()) {
-    unused = mask_all == 0;
-  }
+  cv::Mat unused = mask_all.empty() ? cv::Mat() : cv::Mat(mask_all == 0);
   if (camera.IsWide()) {
     if (unused.empty()) {
       unused = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);

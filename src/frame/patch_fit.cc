@@ -10,16 +10,26 @@
 #include <cstdlib>
 #include <limits>
 
+#include "util/function_clones.h"
+
 namespace hullslam {
 namespace {
 
 constexpr int kHalf = 5;  // px; a patch has 11 x 11
 constexpr int kSide = 2 * kHalf + 1;
-constexpr int kReach = 5;  // px; columns to each side in which the patch is shifted
+constexpr float kPixels = kSide * kSide;
+constexpr int kBefore = 1;  // columns before a left patch, for its derivatives
+constexpr int kReach = 5;   // px; columns to each side in which the patch is shifted
 constexpr int kShifts = 2 * kReach + 1;
 
-// The pixels of a patch, row by row.
-using Patch = std::array<float, size_t{kSide} * kSide>;
+// Numbers in a row, one per column of a patch or per shift of it; the last ones are not used. They
+// let a compiler work on eight at a time.
+constexpr size_t kWidth = 16;
+using Lanes = std::array<float, kWidth>;
+static_assert(kShifts <= kWidth && kSide <= kWidth);
+
+// One number per pixel of a patch, row by row.
+using Patch = std::array<Lanes, kSide>;
 
 // Whether the patch lies in the image with so many pixels about it.
 bool IsInside(const cv::Mat& image, int x, int y, int about = 0) {
@@ -27,123 +37,100 @@ bool IsInside(const cv::Mat& image, int x, int y, int about = 0) {
   return x >= reach && y >= reach && x + reach < image.cols && y + reach < image.rows;
 }
 
-// The patch about a pixel that IsInside.
-Patch CutPatch(const cv::Mat& image, int x, int y) {
-  Patch patch;
-  size_t i = 0;
-  for (int row = y - kHalf; row <= y + kHalf; ++row) {
-    const uint8_t* const pixels = image.ptr<uint8_t>(row) + x - kHalf;
-    for (int column = 0; column < kSide; ++column) {
-      patch[i++] = static_cast<float>(pixels[column]);
+// The order of the additions is that of a processor that adds several numbers at a time.
+inline float Sum(Lanes values) {
+  for (size_t half = kWidth / 2; half > 0; half /= 2) {
+    for (size_t i = 0; i < half; ++i) {
+      values[i] += values[i + half];
     }
   }
-  return patch;
-}
-
-// The patch less its mean, so that images of different brightness can be compared.
-Patch LessMean(Patch patch) {
-  float sum = 0.0F;
-  for (const float value : patch) {
-    sum += value;
-  }
-  const float mean = sum / static_cast<float>(patch.size());
-  for (float& value : patch) {
-    value -= mean;
-  }
-  return patch;
+  return values[0];
 }
 
 // Gaussian weights about the middle, whose mean is 1. Beside a corner at the side of an object the
 // patch shows the background, whose disparity is smaller; so the weights fall to 1/e at its rim.
-Patch MakeCentreWeights() {
-  Patch weights;
-  float sum = 0.0F;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const auto x = static_cast<float>(i % kSide - kHalf);
-    const auto y = static_cast<float>(i / kSide - kHalf);
-    weights[static_cast<size_t>(i)] = std::exp(-(x * x + y * y) / (kHalf * kHalf));
-    sum += weights[static_cast<size_t>(i)];
-  }
-  for (float& weight : weights) {
-    weight *= static_cast<float>(weights.size()) / sum;
-  }
-  return weights;
-}
-
 const Patch& CentreWeights() {
-  static const Patch weights = MakeCentreWeights();
+  static const Patch weights = [] {
+    Patch values{};
+    float sum = 0.0F;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const auto x = static_cast<float>(i % kSide - kHalf);
+      const auto y = static_cast<float>(i / kSide - kHalf);
+      float& value = values[static_cast<size_t>(i / kSide)][static_cast<size_t>(i % kSide)];
+      value = std::exp(-(x * x + y * y) / (kHalf * kHalf));
+      sum += value;
+    }
+    for (Lanes& row : values) {
+      std::ranges::transform(row, row.begin(), [&](float value) { return value * kPixels / sum; });
+    }
+    return values;
+  }();
   return weights;
 }
 
 // ---- whole pixels
 
-// One number per shift of the patch. The last ones are not used; they let a compiler work on eight
-// at a time.
-using PerShift = std::array<float, 16>;
-static_assert(kShifts <= PerShift().size());
+// The following functions round in the same way in both clones: AVX2 alone has no fused
+// multiply-add, and the order of the additions is given.
 
-// The pixels that the shifted patches cover, and columns for the numbers that are not used.
-class Strip {
- public:
-  static constexpr size_t kWidth = static_cast<size_t>(kSide) - 1 + PerShift().size();
+// The pixels of a patch, of columns before it and of columns behind it.
+using Strip = std::array<std::array<float, 2 * kWidth>, kSide>;
 
-  // Beyond the sides of the image the pixels are 0. The rows must lie in it.
-  Strip(const cv::Mat& image, int x, int y) {
-    const int left = x - kHalf - kReach;
-    const int first = std::max(0, -left);
-    const int last = std::min(static_cast<int>(kWidth), image.cols - left);
-    for (int row = 0; row < kSide; ++row) {
-      const uint8_t* const pixels = image.ptr<uint8_t>(y - kHalf + row);
-      for (int column = first; column < last; ++column) {
-        pixels_[static_cast<size_t>(row) * kWidth + static_cast<size_t>(column)] =
-            static_cast<float>(pixels[left + column]);
+// Begins `about` columns before the patch about the pixel. Beyond the sides of the image the pixels
+// are 0. The rows must lie in it.
+HULLSLAM_FUNCTION_CLONES
+Strip CutStrip(const cv::Mat& image, int x, int y, int about) {
+  const int left = x - kHalf - about;
+  const int first = std::max(0, -left);
+  const int count = std::min(static_cast<int>(2 * kWidth), image.cols - left) - first;
+  Strip strip;
+  for (int row = 0; row < kSide; ++row) {
+    std::array<uint8_t, 2 * kWidth> bytes{};
+    std::copy_n(image.ptr<uint8_t>(y - kHalf + row) + left + first, count, bytes.begin() + first);
+    std::ranges::copy(bytes, strip[static_cast<size_t>(row)].begin());
+  }
+  return strip;
+}
+
+// The weighted mean absolute difference of the patch, less its mean, from each of those in the
+// strip, less their means, so that images of different brightness can be compared. Sums of pixels
+// are whole numbers, so they are exact.
+HULLSLAM_FUNCTION_CLONES
+Lanes Differences(const Strip& left, const Strip& right, const Patch& weights) {
+  std::array<float, 2 * kWidth> columns{};
+  Lanes own{};
+  for (size_t row = 0; row < kSide; ++row) {
+    for (size_t i = 0; i < 2 * kWidth; ++i) {
+      columns[i] += right[row][i];
+    }
+    for (size_t i = 0; i < kSide; ++i) {
+      own[i] += left[row][i + kBefore];
+    }
+  }
+  Lanes offsets{};
+  for (size_t column = 0; column < kSide; ++column) {
+    for (size_t shift = 0; shift < kWidth; ++shift) {
+      offsets[shift] += columns[column + shift];
+    }
+  }
+  const float own_mean = Sum(own) / kPixels;
+  for (float& offset : offsets) {
+    offset = offset / kPixels - own_mean;
+  }
+  Lanes sums{};
+  for (size_t row = 0; row < kSide; ++row) {
+    for (size_t column = 0; column < kSide; ++column) {
+      for (size_t shift = 0; shift < kWidth; ++shift) {
+        sums[shift] += weights[row][column] * std::abs(left[row][column + kBefore] +
+                                                       offsets[shift] - right[row][column + shift]);
       }
     }
   }
-
-  // The weighted mean absolute difference of the patch, less its mean, from each of those in the
-  // strip, less their means.
-  PerShift Differences(const Patch& patch) const {
-    const PerShift means = Means();
-    PerShift sums{};
-    const Patch& weights = CentreWeights();
-    ForEachPixel([&](size_t i, const float* pixels) {
-      for (size_t shift = 0; shift < sums.size(); ++shift) {
-        sums[shift] += weights[i] * std::abs(patch[i] - (pixels[shift] - means[shift]));
-      }
-    });
-    for (float& sum : sums) {
-      sum /= static_cast<float>(patch.size());
-    }
-    return sums;
+  for (float& sum : sums) {
+    sum /= kPixels;
   }
-
- private:
-  // Calls visit(i, pixels) for each pixel i of a patch; pixels[k] is the one of the k-th shift.
-  template <typename Visit>
-  void ForEachPixel(const Visit& visit) const {
-    for (size_t row = 0; row < size_t{kSide}; ++row) {
-      for (size_t column = 0; column < size_t{kSide}; ++column) {
-        visit(row * kSide + column, &pixels_[row * kWidth + column]);
-      }
-    }
-  }
-
-  PerShift Means() const {
-    PerShift sums{};
-    ForEachPixel([&](size_t /*i*/, const float* pixels) {
-      for (size_t shift = 0; shift < sums.size(); ++shift) {
-        sums[shift] += pixels[shift];
-      }
-    });
-    for (float& sum : sums) {
-      sum /= static_cast<float>(kSide * kSide);
-    }
-    return sums;
-  }
-
-  std::array<float, size_t{kSide} * kWidth> pixels_{};
-};
+  return sums;
+}
 
 struct Shift {
   int column = 0;
@@ -152,8 +139,8 @@ struct Shift {
 
 // The column at which the patch fits best; nothing if that is the last one that was tried. The row
 // must have room for a patch.
-std::optional<Shift> FindShift(const Patch& patch, const cv::Mat& image, int column, int row) {
-  PerShift differences = Strip(image, column, row).Differences(LessMean(patch));
+std::optional<Shift> FindShift(const Strip& left, const cv::Mat& image, int column, int row) {
+  Lanes differences = Differences(left, CutStrip(image, column, row, kReach), CentreWeights());
   for (int shift = 0; shift < kShifts; ++shift) {
     if (!IsInside(image, column - kReach + shift, row)) {
       differences[static_cast<size_t>(shift)] = std::numeric_limits<float>::infinity();
@@ -169,8 +156,8 @@ std::optional<Shift> FindShift(const Patch& patch, const cv::Mat& image, int col
 
 // ---- fractions of a pixel
 
-constexpr int kMargin =
-    4;  // px about the patch: it moves by less than two, and two are interpolated from
+// px about the patch: it moves by less than two, and two are interpolated from
+constexpr int kMargin = 4;
 
 using CubicWeights = std::array<float, 4>;
 
@@ -182,22 +169,51 @@ CubicWeights CubicWeightsAt(float share) {
           ((-1.5F * t + 2.0F) * t + 0.5F) * t, (0.5F * t - 0.5F) * t * t};
 }
 
-// The patch about a point of a row between its pixels. It is inside with two pixels about it.
-Patch Interpolate(const cv::Mat& image, float x, int y) {
-  const int left = static_cast<int>(std::floor(x));
-  const CubicWeights across = CubicWeightsAt(x - static_cast<float>(left));
-  Patch patch;
-  size_t next = 0;
-  for (int row = y - kHalf; row <= y + kHalf; ++row) {
-    const uint8_t* const pixels = image.ptr<uint8_t>(row) + left - kHalf - 1;
-    for (int i = 0; i < kSide; ++i) {
-      patch[next++] = across[0] * static_cast<float>(pixels[i]) +
-                      across[1] * static_cast<float>(pixels[i + 1]) +
-                      across[2] * static_cast<float>(pixels[i + 2]) +
-                      across[3] * static_cast<float>(pixels[i + 3]);
+// The sums of weight d d, weight d p, weight p p, weight d and weight p, where d is the derivative
+// by the column and p the pixel.
+HULLSLAM_FUNCTION_CLONES
+std::array<float, 5> SumSquares(const Strip& left, const Patch& weights) {
+  std::array<Lanes, 5> sums{};
+  for (size_t row = 0; row < kSide; ++row) {
+    for (size_t i = 0; i < kWidth; ++i) {
+      const float p = left[row][i + kBefore];
+      const float d = 0.5F * (left[row][i + kBefore + 1] - left[row][i + kBefore - 1]);
+      const float by_column = weights[row][i] * d;
+      const float by_pixel = weights[row][i] * p;
+      sums[0][i] += by_column * d;
+      sums[1][i] += by_column * p;
+      sums[2][i] += by_pixel * p;
+      sums[3][i] += by_column;
+      sums[4][i] += by_pixel;
     }
   }
-  return patch;
+  return {Sum(sums[0]), Sum(sums[1]), Sum(sums[2]), Sum(sums[3]), Sum(sums[4])};
+}
+
+// The sums of error d, error p and the weighted error, where the unknowns of Refinement are `at`.
+HULLSLAM_FUNCTION_CLONES
+std::array<float, 3> SumErrors(const Strip& left, const Strip& right, const Patch& weights,
+                               const Eigen::Vector3f& at) {
+  const float whole = std::floor(at[0]);
+  const auto [w0, w1, w2, w3] = CubicWeightsAt(at[0] - whole);
+  const auto begin = static_cast<size_t>(kMargin - 1 + static_cast<int>(whole));
+  const float gain = at[1];
+  const float offset = at[2];
+  std::array<Lanes, 3> sums{};
+  for (size_t row = 0; row < kSide; ++row) {
+    const float* const pixels = &right[row][begin];
+    for (size_t i = 0; i < kWidth; ++i) {
+      const float p = left[row][i + kBefore];
+      const float d = 0.5F * (left[row][i + kBefore + 1] - left[row][i + kBefore - 1]);
+      const float seen =
+          w0 * pixels[i] + w1 * pixels[i + 1] + w2 * pixels[i + 2] + w3 * pixels[i + 3];
+      const float error = weights[row][i] * (seen - gain * p - offset);
+      sums[0][i] += error * d;
+      sums[1][i] += error * p;
+      sums[2][i] += error;
+    }
+  }
+  return {Sum(sums[0]), Sum(sums[1]), Sum(sums[2])};
 }
 
 // The problem of least squares with the unknowns column, gain and offset. Its derivatives are those
@@ -205,19 +221,10 @@ Patch Interpolate(const cv::Mat& image, float x, int y) {
 // times difference vanishes, the patches fit, whatever the noise of the derivatives is.
 class Refinement {
  public:
-  Refinement(const cv::Mat& left, cv::Point at) : patch_(CutPatch(left, at.x, at.y)) {
-    const Patch& weights = CentreWeights();
-    Eigen::Matrix3f hessian = Eigen::Matrix3f::Zero();
-    size_t i = 0;
-    for (int y = at.y - kHalf; y <= at.y + kHalf; ++y) {
-      const auto* const row = left.ptr<uint8_t>(y);
-      for (int x = at.x - kHalf; x <= at.x + kHalf; ++x) {
-        by_column_[i] = 0.5F * static_cast<float>(row[x + 1] - row[x - 1]);
-        const Eigen::Vector3f derivative(by_column_[i], -patch_[i], -1.0F);
-        hessian += weights[i] * derivative * derivative.transpose();
-        ++i;
-      }
-    }
+  explicit Refinement(const Strip& left) : left_(left) {
+    const auto [dd, dp, pp, d, p] = SumSquares(left_, CentreWeights());
+    Eigen::Matrix3f hessian;
+    hessian << dd, -dp, -d, -dp, pp, p, -d, p, kPixels;
     hessian.diagonal().array() += 1e-3F;  // a patch without texture
     inverse_ = hessian.inverse();
   }
@@ -227,35 +234,26 @@ class Refinement {
     constexpr int kMostSteps = 10;
     constexpr float kSmallStep = 0.005F;  // px
     constexpr float kMostMoved = 1.5F;    // px
-    Eigen::Vector3f at(static_cast<float>(begin.column), 1.0F, 0.0F);
+    const Strip strip = CutStrip(right, begin.column, row, kMargin);
+    Eigen::Vector3f at(0.0F, 1.0F, 0.0F);  // the column counts from that of the shift
     for (int step = 0; step < kMostSteps; ++step) {
-      const Eigen::Vector3f change = inverse_ * Gradient(right, at, row);
+      const auto [d, p, one] = SumErrors(left_, strip, CentreWeights(), at);
+      const Eigen::Vector3f change = inverse_ * Eigen::Vector3f(d, -p, -one);
       at -= change;
       // The comparison is written so that NaN is refused.
-      if (!(std::abs(at[0] - static_cast<float>(begin.column)) < kMostMoved)) {
+      if (!(std::abs(at[0]) < kMostMoved)) {
         return std::nullopt;
       }
       if (std::abs(change[0]) < kSmallStep) {
         break;
       }
     }
-    return PatchFit{.column = at[0], .difference = begin.difference};
+    return PatchFit{.column = static_cast<float>(begin.column) + at[0],
+                    .difference = begin.difference};
   }
 
  private:
-  Eigen::Vector3f Gradient(const cv::Mat& right, const Eigen::Vector3f& at, int row) const {
-    const Patch seen = Interpolate(right, at[0], row);
-    const Patch& weights = CentreWeights();
-    Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
-    for (size_t i = 0; i < seen.size(); ++i) {
-      const float error = weights[i] * (seen[i] - at[1] * patch_[i] - at[2]);
-      gradient += error * Eigen::Vector3f(by_column_[i], -patch_[i], -1.0F);
-    }
-    return gradient;
-  }
-
-  Patch patch_;
-  Patch by_column_;
+  const Strip& left_;
   Eigen::Matrix3f inverse_;
 };
 
@@ -266,11 +264,12 @@ std::optional<PatchFit> FitPatch(const cv::Mat& left, cv::Point at, const cv::Ma
   if (!IsInside(left, at.x, at.y, 1) || !IsInside(right, column, at.y, 0)) {
     return std::nullopt;
   }
-  const std::optional<Shift> shift = FindShift(CutPatch(left, at.x, at.y), right, column, at.y);
+  const Strip patch = CutStrip(left, at.x, at.y, kBefore);
+  const std::optional<Shift> shift = FindShift(patch, right, column, at.y);
   if (!shift || !IsInside(right, shift->column, at.y, kMargin)) {
     return std::nullopt;
   }
-  return Refinement(left, at).Run(right, *shift, at.y);
+  return Refinement(patch).Run(right, *shift, at.y);
 }
 
 }  // namespace hullslam

@@ -92,18 +92,15 @@ StereoMatcher::Found StereoMatcher::MatchOne(const StereoImage& left, const Ster
 
 std::vector<float> StereoMatcher::Match(const StereoImage& left, const StereoImage& right,
                                         TaskRunner& runner) {
-  constexpr size_t kInTask = 128;
   const size_t count = left.features.keypoints.size();
   std::vector<float> disparities(count, 0.0F);
   std::vector<float> differences(count, std::numeric_limits<float>::infinity());
   SortIntoRows(right);
-  runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
-    for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
-      const Found found = MatchOne(left, right, i);
-      if (found.disparity > 0.0F && found.disparity <= largest_disparity_) {
-        disparities[i] = found.disparity;
-        differences[i] = found.difference;
-      }
+  runner.RunEach(count, [&](size_t i) {
+    const Found found = MatchOne(left, right, i);
+    if (found.disparity > 0.0F && found.disparity <= largest_disparity_) {
+      disparities[i] = found.disparity;
+      differences[i] = found.difference;
     }
   });
   const double bound =
@@ -117,7 +114,7 @@ std::vector<float> StereoMatcher::Match(const StereoImage& left, const StereoIma
 }
 
 StereoFeatures::StereoFeatures(const FeatureOptions& features, const PinholeCamera& camera)
-    : extractor_(features), matcher_(extractor_.levels(), camera.fx) {}
+    : extractor_(features, true), matcher_(extractor_.levels(), camera.fx) {}
 
 ExtractedFeatures StereoFeatures::Extract(FeatureExtractor& left_extractor, const cv::Mat& left,
                                           const cv::Mat& right, TaskRunner& runner,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "features/test_images.h"
@@ -178,6 +179,23 @@ TEST(FeatureExtractor, APairHasTheFeaturesOfItsImages) {
   EXPECT_EQ(pair[1].descriptors, other.descriptors);
   EXPECT_THROW(FeatureExtractor::ExtractPair({&first, &second}, {images[0], cv::Mat()}, runner),
                CheckError);
+}
+
+// Every keypoint has features on its own level or on a neighbouring one, and there are more of
+// them.
+TEST(FeatureExtractor, HalfOfTheLevelsHaveTheFeaturesOfAll) {
+  const cv::Mat image = MakeCornerImage();
+  const ExtractedFeatures all = FeatureExtractor{FeatureOptions()}.Extract(image);
+  const ExtractedFeatures half = FeatureExtractor(FeatureOptions(), true).Extract(image);
+  EXPECT_GT(half.keypoints.size(), all.keypoints.size());
+  std::set<int> levels;
+  for (const RawKeypoint& keypoint : half.keypoints) {
+    levels.insert(keypoint.level);
+  }
+  EXPECT_EQ(levels, (std::set<int>{0, 2, 4, 6}));
+  FeatureOptions one;
+  one.level_count = 1;
+  EXPECT_GT(FeatureExtractor(one, true).Extract(image).keypoints.size(), 100u);
 }
 
 TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {

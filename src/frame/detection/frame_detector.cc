@@ -50,6 +50,11 @@ std::vector<SilhouetteLine> LinesOf(const Detection& left, const Detection& righ
   return lines;
 }
 
+DetectionOptions WithoutKeypoints(DetectionOptions options) {
+  options.min_keypoints = 0;
+  return options;
+}
+
 }  // namespace
 
 size_t AddLinesOfRight(std::span<const Detection> right, const PinholeCamera& camera,
@@ -76,15 +81,6 @@ size_t AddLinesOfRight(std::span<const Detection> right, const PinholeCamera& ca
   }
   return added;
 }
-
-namespace {
-
-DetectionOptions WithoutKeypoints(DetectionOptions options) {
-  options.min_keypoints = 0;
-  return options;
-}
-
-}  // namespace
 
 FrameDetector::FrameDetector(const Sensor& sensor, const DepthOptions& depth,
                              const DetectionOptions& options, std::set<std::string> dynamic_classes)
