@@ -76,8 +76,8 @@ void ReducedPointsCost::PrepareForEvaluation(bool evaluate_jacobians, bool new_e
       points_.Accept();
       has_moved_ = false;
     }
-    points_.Linearize(hessian_, gradient_);
-    has_form_ = form_.Compute(hessian_, gradient_);
+    points_.Linearize(form_.matrix(), gradient_);
+    has_form_ = form_.Factorise(gradient_);
   }
 }
 

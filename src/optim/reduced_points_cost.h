@@ -64,7 +64,6 @@ class ReducedPointsCost final : public ceres::EvaluationCallback {
   std::vector<Rigid3> cam_from_world_;
   double cost_ = 0.0;
   bool has_moved_ = false;  // since the points were accepted
-  Eigen::MatrixXd hessian_;
   Eigen::VectorXd gradient_;
   SquareRootForm<Eigen::Dynamic> form_;
   bool has_form_ = false;
