@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/bundle_adjustment.h"
 
-#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "costs/manifolds.h"
-#include "costs/reprojection.h"
-#include "costs/wrapped_costs.h"
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"
 #include "optim/bundle_points.h"
@@ -29,16 +27,7 @@ namespace {
 
 using internal::Supervision;
 
-std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
-                                              const PointMeasurement& measurement) {
-  std::unique_ptr<ceres::CostFunction> cost;
-  if (measurement.has_depth()) {
-    cost = std::make_unique<RgbdReprojectionCost>(camera, measurement);
-  } else {
-    cost = std::make_unique<ReprojectionCost>(camera, measurement);
-  }
-  return std::make_unique<DefinedCost>(std::move(cost));
-}
+constexpr double kFar = 3e4;  // 100 sigmas in each residual
 
 // The parameters of a bundle adjustment and the residuals between them.
 class Bundle {
@@ -103,11 +92,32 @@ class Bundle {
     });
   }
 
+  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
   bool Solve(int iterations, PointLoss loss, Supervision& supervision, BundleResult& result) {
-    const size_t moving = window_.moving.size();
-    const bool eliminates = moving > 0 && moving <= options_.max_eliminated;
-    return eliminates ? SolveEliminated(iterations, loss, supervision, result)
-                      : SolveSparse(iterations, loss, supervision, result);
+    const bool is_sparse = window_.moving.size() > options_.max_dense;
+    internal::FollowOptions follow = options_.follow;
+    if (is_sparse) {  // in a large map there is always a point that a step moves behind a camera
+      follow.chi2_behind = kFar;
+    }
+    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss, follow);
+    internal::ReducedPointsCost cost(eliminated, poses_, is_sparse);
+    if (window_.moving.empty()) {
+      cost.FollowPoints(iterations);
+    }
+    ceres::Problem::Options problem_options = ProblemOptions();
+    problem_options.evaluation_callback = &cost;
+    ceres::Problem problem(problem_options);
+    cost.AddResiduals(problem);
+    ceres::Solver::Options solver;
+    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    // If there are objects, Ceres eliminates their half axes.
+    if (objects_.HasMoving()) {
+      solver.linear_solver_type = is_sparse ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
+    } else {
+      solver.linear_solver_type =
+          is_sparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
+    }
+    return Run(problem, solver, iterations, supervision, result);
   }
 
   void Write(BundleResult& result) {
@@ -167,83 +177,13 @@ class Bundle {
     return options;
   }
 
-  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
-  bool SolveEliminated(int iterations, PointLoss loss, Supervision& supervision,
-                       BundleResult& result) {
-    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss,
-                                          options_.follow);
-    internal::ReducedPointsCost cost(eliminated, poses_);
-    ceres::Problem::Options problem_options = ProblemOptions();
-    problem_options.evaluation_callback = &cost;
-    ceres::Problem problem(problem_options);
-    cost.AddResiduals(problem);
-    ceres::Solver::Options solver;
-    // If there are objects, Ceres eliminates their half axes.
-    solver.linear_solver_type =
-        objects_.HasMoving() ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
-    return Run(problem, solver, 0, iterations, supervision, result);
-  }
-
-  // Ceres eliminates the points. The reduced system is sparse.
-  bool SolveSparse(int iterations, PointLoss point_loss, Supervision& supervision,
-                   BundleResult& result) {
-    ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
-    ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
-    ceres::CauchyLoss cauchy(kCauchyScale);
-    std::vector<std::unique_ptr<ceres::CostFunction>> costs;
-    std::vector<std::unique_ptr<ceres::LossFunction>> weighted;
-    ceres::Problem problem(ProblemOptions());
-    for (size_t i = 0; i < points_.size(); ++i) {
-      for (const PointObservation& observation : points_.ObservationsOf(i)) {
-        if (observation.is_inlier) {
-          ceres::LossFunction* loss = nullptr;
-          if (point_loss == PointLoss::kHuber) {
-            loss = observation.measurement.has_depth() ? &with_depth : &without_depth;
-          } else if (point_loss == PointLoss::kCauchy) {
-            loss = &cauchy;
-          }
-          if (observation.weight != 1.0) {
-            weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, observation.weight,
-                                                                   ceres::DO_NOT_TAKE_OWNERSHIP));
-            loss = weighted.back().get();
-          }
-          costs.push_back(MakeCost(camera_, observation.measurement));
-          problem.AddResidualBlock(costs.back().get(), loss, poses_[observation.pose].data(),
-                                   points_.positions()[i].data());
-        }
-      }
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (Eigen::Vector3d& point : points_.positions()) {
-      if (problem.HasParameterBlock(point.data())) {
-        solver.linear_solver_ordering->AddElementToGroup(point.data(), 0);
-      }
-    }
-    solver.linear_solver_type = ceres::SPARSE_SCHUR;
-    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-    // After each step of all parameters, the objects alone are optimised for the new poses. The
-    // residuals of objects are far less linear than those of points. Without this, the solver could
-    // only take short steps, and slow changes of the whole map, such as the correction of its scale
-    // after a loop, would not finish.
-    if (objects_.HasMoving()) {
-      solver.use_inner_iterations = true;
-      solver.inner_iteration_tolerance = options_.function_tolerance;
-      solver.inner_iteration_ordering = objects_.OrderAlone();
-    }
-    return Run(problem, solver, 2, iterations, supervision, result);
-  }
-
-  // Adds objects and poses to the problem and solves it. `axes_group` is the group of the half axes
-  // of the objects in the order of elimination.
-  bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
+  // Adds objects and poses to the problem and solves it.
+  bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int iterations,
            Supervision& supervision, BundleResult& result) {
-    if (solver.linear_solver_ordering == nullptr) {
-      solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    }
+    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     objects_.AddResiduals(problem, poses_);
     AddPoses(problem, *solver.linear_solver_ordering);
-    objects_.AddParameters(problem, manifold_, axes_group, *solver.linear_solver_ordering);
+    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
     solver.max_num_iterations = iterations;
     solver.function_tolerance = options_.function_tolerance;
     solver.num_threads = options_.threads;
@@ -351,10 +291,12 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
 IslandAdjustment AdjustIsland(const Map& map, IslandId island, const Sensor& sensor,
                               const ObjectOptions& options, const Cancellation* cancellation,
                               const ProgressCallback& on_progress) {
+  malloc_trim(0);  // gives pages that nothing is in back, because this needs much memory
   BundleWindow window = GlobalWindow(map, island, ObjectsToAdjust(options));
   BundleResult result =
       AdjustBundle(map, sensor, window, BundleOptions{.objects = options.bundle}.ForWholeMap(),
                    cancellation, on_progress);
+  malloc_trim(0);
   return {.result = std::move(result), .objects = std::move(window.objects)};
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct FollowOptions {
   // Another step is only taken if the last one was expected to lower the cost of the point by a
   // larger share than this.
   double worthwhile = 1e-3;
+  // The squared error of an observation whose point is not in front of the camera. If it is
+  // infinite, no pose may get there, so a single point can hold the whole map.
+  double chi2_behind = std::numeric_limits<double>::infinity();
 };
 
 // The points of a bundle adjustment and their measurements in its images.

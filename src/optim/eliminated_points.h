@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "geometry/matrix_pose.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
+#include "optim/block_cholesky.h"
 #include "optim/bundle_points.h"
 #include "optim/robust.h"
 
@@ -49,6 +51,12 @@ class EliminatedPoints {
   // positions and the poses of the last Follow(). The three parameters of the rotation of a pose
   // come before those of its translation.
   void Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
+  // The same for an S that is mostly zero, with the poses in this order: order[k] is the pose of
+  // the k-th rows.
+  void Linearize(std::span<const uint32_t> order, BlockCholesky& hessian,
+                 Eigen::VectorXd& gradient);
+  // The moving poses that share points as inliers with a pose; the pose itself may be among them.
+  std::vector<std::vector<uint32_t>> CoupledPoses() const;
 
  private:
   // The cost of one point and its derivatives by the point.
@@ -71,7 +79,7 @@ class EliminatedPoints {
   };
   // Second derivative of the cost of an observation, by the pose and the point.
   struct Coupling {
-    Eigen::Index pose = 0;  // row of its first parameter
+    size_t pose = 0;  // its place among the blocks of S
     Eigen::Matrix<double, 6, 3> block;
   };
 
@@ -79,11 +87,19 @@ class EliminatedPoints {
   double Loss(double chi2, const BundlePoints::PointObservation& observation) const;
   double CostOf(size_t point, const Eigen::Vector3d& position) const;
   double WeightOf(double chi2, const BundlePoints::PointObservation& observation) const;
+  double Chi2(const BundlePoints::PointObservation& observation,
+              const Eigen::Vector3d& position) const;
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;
+  // `block_at(row, column)` returns a block of S, `place_of(pose)` the place of a pose.
+  template <typename BlockAt, typename PlaceOf>
+  void Sum(const BlockAt& block_at, const PlaceOf& place_of, Eigen::VectorXd& gradient);
+  template <typename BlockAt, typename PlaceOf>
   void AddView(const BundlePoints::PointObservation& observation, const Eigen::Vector3d& position,
-               PointSystem& point, Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
-  void Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,
+               const BlockAt& block_at, const PlaceOf& place_of, PointSystem& point,
+               Eigen::VectorXd& gradient);
+  template <typename BlockAt>
+  void Eliminate(const PointSystem& point, double damping, const BlockAt& block_at,
                  Eigen::VectorXd& gradient) const;
 
   PinholeCamera camera_;

@@ -120,7 +120,7 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
   }
 }
 
-void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
+void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                                  ceres::ParameterBlockOrdering& ordering) {
   // Ceres sorts the blocks of a group by address. Each group has the blocks of one vector only, so
   // they stay in the order of the vector. With blocks of two vectors the order would depend on
@@ -132,19 +132,8 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
     }
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);
-    ordering.AddElementToGroup(object.log_axes.data(), axes_group);
+    ordering.AddElementToGroup(object.log_axes.data(), 0);
   }
-}
-
-std::shared_ptr<ceres::ParameterBlockOrdering> ObjectBundle::OrderAlone() {
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (Object& object : objects_) {
-    if (!object.is_fixed) {
-      ordering->AddElementToGroup(object.pose.data(), 0);
-      ordering->AddElementToGroup(object.log_axes.data(), 1);
-    }
-  }
-  return ordering;
 }
 
 bool ObjectBundle::HasMoving() const { return !std::ranges::all_of(objects_, &Object::is_fixed); }

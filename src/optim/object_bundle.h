@@ -36,11 +36,9 @@ class ObjectBundle {
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the half axes of the objects into `axes_group` of the ordering, their poses into group 2.
-  void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
+  // Puts the half axes of the objects into group 0 of the ordering, their poses into group 2.
+  void AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                      ceres::ParameterBlockOrdering& ordering);
-  // The order of a step in which only the objects move: first their poses, then their half axes.
-  std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
   // Whether there is an object that is not locked. The locked ones are constant.
   bool HasMoving() const;
 
