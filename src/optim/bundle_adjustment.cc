@@ -6,6 +6,7 @@
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -20,14 +21,11 @@
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
-#include "util/statistics.h"
 
 namespace hullslam {
 namespace {
 
 using internal::Supervision;
-
-constexpr double kFar = 3e4;  // 100 sigmas in each residual
 
 // The parameters of a bundle adjustment and the residuals between them.
 class Bundle {
@@ -39,8 +37,7 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>>
-        weights;  // weights of the keypoints of each pose; monocular only
+    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
@@ -97,19 +94,29 @@ class Bundle {
     const bool is_sparse = window_.moving.size() > options_.max_dense;
     internal::FollowOptions follow = options_.follow;
     if (is_sparse) {  // in a large map there is always a point that a step moves behind a camera
-      follow.chi2_behind = kFar;
+      follow.chi2_behind = 3e4;  // 100 sigmas in each residual
     }
     internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss, follow);
     internal::ReducedPointsCost cost(eliminated, poses_, is_sparse);
-    if (window_.moving.empty()) {
-      cost.FollowPoints(iterations);
+    for (int i = 0; window_.moving.empty() && i < iterations; ++i) {
+      cost.PrepareForEvaluation(false, true);  // moves the points
+      eliminated.Accept();
     }
-    ceres::Problem::Options problem_options = ProblemOptions();
+    ceres::Problem::Options problem_options;
+    problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.disable_all_safety_checks = true;
     problem_options.evaluation_callback = &cost;
     ceres::Problem problem(problem_options);
     cost.AddResiduals(problem);
+    objects_.AddResiduals(problem, poses_);
     ceres::Solver::Options solver;
-    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (size_t i = 0; i < window_.moving.size(); ++i) {
+      problem.SetManifold(poses_[i].data(), &manifold_);
+      solver.linear_solver_ordering->AddElementToGroup(poses_[i].data(), 1);
+    }
+    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
     // If there are objects, Ceres eliminates their half axes.
     if (objects_.HasMoving()) {
       solver.linear_solver_type = is_sparse ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
@@ -117,13 +124,34 @@ class Bundle {
       solver.linear_solver_type =
           is_sparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
     }
-    return Run(problem, solver, iterations, supervision, result);
+    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    solver.max_num_iterations = iterations;
+    solver.function_tolerance = options_.function_tolerance;
+    solver.num_threads = options_.threads;
+    solver.logging_type = ceres::SILENT;
+    solver.callbacks = {&supervision, &objects_};
+    ceres::Solver::Summary summary;
+    do {
+      ceres::Solve(solver, &problem, &summary);
+      const int evaluations = static_cast<int>(summary.iterations.size());  // with the start
+      result.iterations += evaluations;
+      solver.max_num_iterations -= evaluations - 1;
+    } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
+             objects_.LeaveOutUndefinedObservations());
+    result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
+    if (!summary.IsSolutionUsable()) {
+      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
+                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
+                    summary.message);
+    }
+    return summary.IsSolutionUsable();
   }
 
   void Write(BundleResult& result) {
     for (size_t i = 0; i < window_.moving.size(); ++i) {
       result.poses.emplace_back(window_.moving[i], FromBlock(poses_[i].data()));
     }
+    std::ranges::sort(result.poses, {}, &std::pair<KeyframeId, Rigid3>::first);
     for (size_t i = 0; i < points_.size(); ++i) {
       result.positions.emplace_back(window_.landmarks[i], points_.positions()[i]);
     }
@@ -168,60 +196,6 @@ class Bundle {
     }
   }
 
-  static ceres::Problem::Options ProblemOptions() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
-  // Adds objects and poses to the problem and solves it.
-  bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int iterations,
-           Supervision& supervision, BundleResult& result) {
-    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    objects_.AddResiduals(problem, poses_);
-    AddPoses(problem, *solver.linear_solver_ordering);
-    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
-    solver.max_num_iterations = iterations;
-    solver.function_tolerance = options_.function_tolerance;
-    solver.num_threads = options_.threads;
-    solver.logging_type = ceres::SILENT;
-    solver.callbacks.push_back(&supervision);
-    internal::UndefinedObservationStop stop(objects_);
-    solver.callbacks.push_back(&stop);
-    ceres::Solver::Summary summary;
-    do {
-      ceres::Solve(solver, &problem, &summary);
-      const int evaluations = static_cast<int>(summary.iterations.size());  // with the start
-      result.iterations += evaluations;
-      solver.max_num_iterations -= evaluations - 1;
-    } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
-             objects_.LeaveOutUndefinedObservations());
-    result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
-    if (!summary.IsSolutionUsable()) {
-      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
-                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
-                    summary.message);
-    }
-    return summary.IsSolutionUsable();
-  }
-
-  void AddPoses(ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
-    for (size_t i = 0; i < poses_.size(); ++i) {
-      double* pose = poses_[i].data();
-      if (!problem.HasParameterBlock(pose)) {
-        continue;
-      }
-      problem.SetManifold(pose, &manifold_);
-      if (i >= window_.moving.size()) {
-        problem.SetParameterBlockConstant(pose);
-      }
-      ordering.AddElementToGroup(pose, 1);
-    }
-  }
-
   const PinholeCamera& camera_;
   const BundleWindow& window_;
   const BundleOptions& options_;
@@ -233,9 +207,12 @@ class Bundle {
   PoseManifold manifold_;
 };
 
-BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,
+BundleResult Adjust(const Map& map, const Sensor& sensor, BundleWindow window,
                     const BundleOptions& options, Supervision& supervision) {
   BundleResult result;
+  if (window.moving.size() > options.max_dense) {
+    SortForElimination(map, window);
+  }
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
   const BundleRules rules = BundleRules::ForSensor(sensor);

@@ -19,8 +19,7 @@ struct FollowOptions {
   // Another step is only taken if the last one was expected to lower the cost of the point by a
   // larger share than this.
   double worthwhile = 1e-3;
-  // The squared error of an observation whose point is not in front of the camera. If it is
-  // infinite, no pose may get there, so a single point can hold the whole map.
+  // The squared error of a point behind its camera. If it is infinite, one point can hold the map.
   double chi2_behind = std::numeric_limits<double>::infinity();
 };
 
@@ -70,8 +69,7 @@ class BundlePoints {
   size_t Begin(size_t point) const { return point == 0 ? 0 : ends_[point - 1]; }
 
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<PointObservation>
-      observations_;  // those of the first point, then those of the second, and so on
+  std::vector<PointObservation> observations_;  // those of the first point, then of the second ...
   std::vector<size_t> ends_;
 };
 

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -45,15 +44,11 @@ EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& po
 
 double EliminatedPoints::Loss(double chi2,
                               const BundlePoints::PointObservation& observation) const {
-  switch (loss_) {
-    case PointLoss::kNone:
-      break;
-    case PointLoss::kHuber:
-      return 0.5 * observation.weight * HuberCost(chi2, OutlierBound(observation.measurement));
-    case PointLoss::kCauchy:
-      return 0.5 * observation.weight * CauchyCost(chi2, kCauchyScale);
-  }
-  return 0.5 * observation.weight * chi2;
+  const double loss = loss_ == PointLoss::kHuber
+                          ? HuberCost(chi2, OutlierBound(observation.measurement))
+                      : loss_ == PointLoss::kCauchy ? CauchyCost(chi2, kCauchyScale)
+                                                    : chi2;
+  return 0.5 * observation.weight * loss;
 }
 
 double EliminatedPoints::WeightOf(double chi2,
@@ -69,19 +64,14 @@ double EliminatedPoints::WeightOf(double chi2,
   return observation.weight;
 }
 
-double EliminatedPoints::Chi2(const BundlePoints::PointObservation& observation,
-                              const Eigen::Vector3d& position) const {
-  const double chi2 =
-      PointChi2(camera_, observation.measurement, poses_[observation.pose] * position);
-  return chi2 < kInfinite ? chi2 : follow_.chi2_behind;
-}
-
 double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
   double cost = 0.0;
   for (const BundlePoints::PointObservation& observation :
        std::as_const(points_).ObservationsOf(point)) {
     if (observation.is_inlier) {
-      cost += Loss(Chi2(observation, position), observation);
+      const double chi2 =
+          PointChi2(camera_, observation.measurement, poses_[observation.pose] * position);
+      cost += Loss(chi2 < kInfinite ? chi2 : follow_.chi2_behind, observation);
     }
   }
   return cost;
@@ -151,11 +141,10 @@ double EliminatedPoints::Follow(std::span<const Rigid3> poses) {
 void EliminatedPoints::Accept() { points_.positions() = moved_; }
 
 // A step (w, v) of a pose moves a point x of the camera frame by -[x]_x w + v.
-template <typename BlockAt, typename PlaceOf>
+template <typename BlockAt>
 void EliminatedPoints::AddView(const BundlePoints::PointObservation& observation,
                                const Eigen::Vector3d& position, const BlockAt& block_at,
-                               const PlaceOf& place_of, PointSystem& point,
-                               Eigen::VectorXd& gradient) {
+                               PointSystem& point, Eigen::VectorXd& gradient) {
   const MatrixPose& pose = poses_[observation.pose];
   const Eigen::Vector3d in_camera = pose * position;
   if (in_camera.z() < kMinDepth) {
@@ -170,16 +159,15 @@ void EliminatedPoints::AddView(const BundlePoints::PointObservation& observation
   const Eigen::Matrix3d by_camera_point = weight * linear.Hessian();
   const Eigen::Vector3d slope = weight * linear.Gradient();
   const Eigen::Matrix3d by_rotation = -by_camera_point.colwise().cross(in_camera);  // [x]_x H
-  const size_t place = place_of(observation.pose);
-  const auto at = 6 * static_cast<Eigen::Index>(place);
-  auto&& hessian = block_at(place, place);
+  const auto at = 6 * static_cast<Eigen::Index>(observation.pose);
+  auto&& hessian = block_at(observation.pose, observation.pose);
   hessian.template block<3, 3>(0, 0) -= by_rotation.rowwise().cross(in_camera.transpose());
   hessian.template block<3, 3>(3, 0) += by_rotation.transpose();
   hessian.template block<3, 3>(3, 3) += by_camera_point;
   gradient.segment<3>(at) += in_camera.cross(slope);
   gradient.segment<3>(at + 3) += slope;
   Coupling& coupling = couplings_.emplace_back();
-  coupling.pose = place;
+  coupling.pose = observation.pose;
   coupling.block.topRows<3>().noalias() = by_rotation * pose.rotation;
   coupling.block.bottomRows<3>().noalias() = by_camera_point * pose.rotation;
 }
@@ -200,9 +188,8 @@ void EliminatedPoints::Eliminate(const PointSystem& point, double damping, const
   }
 }
 
-template <typename BlockAt, typename PlaceOf>
-void EliminatedPoints::Sum(const BlockAt& block_at, const PlaceOf& place_of,
-                           Eigen::VectorXd& gradient) {
+template <typename BlockAt>
+void EliminatedPoints::Sum(const BlockAt& block_at, Eigen::VectorXd& gradient) {
   gradient.setZero(static_cast<Eigen::Index>(6 * moving_));
   for (size_t i = 0; i < points_.size(); ++i) {
     PointSystem point;
@@ -210,7 +197,7 @@ void EliminatedPoints::Sum(const BlockAt& block_at, const PlaceOf& place_of,
     for (const BundlePoints::PointObservation& observation :
          std::as_const(points_).ObservationsOf(i)) {
       if (observation.is_inlier) {
-        AddView(observation, points_.positions()[i], block_at, place_of, point, gradient);
+        AddView(observation, points_.positions()[i], block_at, point, gradient);
       }
     }
     Eliminate(point, damping_[i], block_at, gradient);
@@ -224,34 +211,25 @@ void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& grad
     return hessian.block<6, 6>(6 * static_cast<Eigen::Index>(row),
                                6 * static_cast<Eigen::Index>(column));
   };
-  Sum(block_at, std::identity(), gradient);
+  Sum(block_at, gradient);
 }
 
-void EliminatedPoints::Linearize(std::span<const uint32_t> order, BlockCholesky& hessian,
-                                 Eigen::VectorXd& gradient) {
-  std::vector<uint32_t> places(order.size());
-  for (size_t k = 0; k < order.size(); ++k) {
-    places[order[k]] = static_cast<uint32_t>(k);
-  }
+void EliminatedPoints::Linearize(BlockCholesky& hessian, Eigen::VectorXd& gradient) {
   hessian.SetZero();
-  Sum([&](size_t row, size_t column) -> BlockCholesky::Block& { return hessian.At(row, column); },
-      [&](size_t pose) { return places[pose]; }, gradient);
+  Sum(
+      [&](size_t row, size_t column) -> auto& { return hessian.At(row, column); }, gradient);
 }
 
-std::vector<std::vector<uint32_t>> EliminatedPoints::CoupledPoses() const {
-  std::vector<std::vector<uint32_t>> coupled(moving_);
+std::vector<std::set<uint32_t>> EliminatedPoints::CoupledPoses() const {
+  std::vector<std::set<uint32_t>> coupled(moving_);
   for (size_t i = 0; i < points_.size(); ++i) {
     for (const auto& one : std::as_const(points_).ObservationsOf(i)) {
       for (const auto& other : std::as_const(points_).ObservationsOf(i)) {
-        if (one.is_inlier && other.is_inlier && std::max(one.pose, other.pose) < moving_) {
-          coupled[one.pose].push_back(static_cast<uint32_t>(other.pose));
+        if (one.is_inlier && other.is_inlier && one.pose < other.pose && other.pose < moving_) {
+          coupled[one.pose].insert(static_cast<uint32_t>(other.pose));
         }
       }
     }
-  }
-  for (std::vector<uint32_t>& poses : coupled) {
-    std::ranges::sort(poses);
-    poses.erase(std::unique(poses.begin(), poses.end()), poses.end());
   }
   return coupled;
 }

@@ -66,7 +66,7 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id, const PoseIndices& pos
   for (const ObjectObservation& seen : Thin(outer, static_cast<size_t>(options_.max_outer_views))) {
     AddView(map, seen, landmark.misfit_px, nullptr);
   }
-  object.fixed_part->AddPrior(
+  object.fixed_part->Add(
       MakeObjectPrior(landmark.ellipsoid, object.has_depth, options_.constraint));
 }
 
@@ -148,16 +148,11 @@ bool ObjectBundle::HasUndefinedObservation() const {
 
 bool ObjectBundle::LeaveOutUndefinedObservations() {
   const bool has_undefined = HasUndefinedObservation();
-  const auto leave_out = [](ObjectSumCost& sum) {
-    if (sum.HasUndefined()) {
-      sum.LeaveOutUndefined();
-    }
-  };
   for (Object& object : objects_) {
-    leave_out(*object.fixed_part);
+    object.fixed_part->LeaveOutUndefined();
   }
   for (Observation& observation : observations_) {
-    leave_out(*observation.cost);
+    observation.cost->LeaveOutUndefined();
   }
   return has_undefined;
 }

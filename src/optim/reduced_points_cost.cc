@@ -3,56 +3,15 @@
 
 #include <ceres/problem.h>
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace hullslam::internal {
-namespace {
-
-// An order of elimination with little fill-in: approximate minimum degree.
-std::vector<uint32_t> OrderOf(const std::vector<std::vector<uint32_t>>& coupled) {
-  const auto size = static_cast<int>(coupled.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < size; ++i) {
-    for (const uint32_t j : coupled[static_cast<size_t>(i)]) {
-      entries.emplace_back(i, static_cast<int>(j), 1.0);
-    }
-  }
-  Eigen::SparseMatrix<double> pattern(size, size);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int>()(pattern, order);
-  return {order.indices().begin(), order.indices().end()};
-}
-
-// The rows below the diagonal, in this order of the poses.
-BlockCholesky MakeBlocks(const std::vector<std::vector<uint32_t>>& coupled,
-                         const std::vector<uint32_t>& order) {
-  std::vector<size_t> places(order.size());
-  for (size_t k = 0; k < order.size(); ++k) {
-    places[order[k]] = k;
-  }
-  std::vector<std::vector<uint32_t>> rows(order.size());
-  for (size_t pose = 0; pose < order.size(); ++pose) {
-    for (const uint32_t other : coupled[pose]) {
-      if (places[other] > places[pose]) {
-        rows[places[pose]].push_back(static_cast<uint32_t>(places[other]));
-      }
-    }
-  }
-  return BlockCholesky(std::move(rows));
-}
-
-}  // namespace
-
-ReducedPointsCost::RowsOfPose::RowsOfPose(const ReducedPointsCost& all, size_t row)
-    : all_(all), row_(row) {
-  set_num_residuals(row + 1 < all.order_.size() ? 6 : 7);
-  mutable_parameter_block_sizes()->assign(all.ColumnsOf(row).size(),
+ReducedPointsCost::RowsOfPose::RowsOfPose(const ReducedPointsCost& all, size_t pose)
+    : all_(all), pose_(pose) {
+  set_num_residuals(pose + 1 < all.points_.moving() ? 6 : 7);
+  mutable_parameter_block_sizes()->assign(all.PosesOf(pose).size(),
                                           static_cast<int>(PoseBlock().size()));
 }
 
@@ -72,16 +31,20 @@ bool ReducedPointsCost::RowsOfPose::Evaluate(double const* const* /*parameters*/
   if (!all_.has_form_) {
     return false;
   }
-  values.head<6>() = all_.residual().segment<6>(6 * static_cast<Eigen::Index>(row_));
+  const Eigen::Index first = 6 * static_cast<Eigen::Index>(pose_);
+  values.head<6>() = all_.residual().segment<6>(first);
   values.tail(num_residuals() - 6)
       .setConstant(std::sqrt(std::max(0.0, twice_cost - all_.residual().squaredNorm())));
-  const std::vector<uint32_t> columns = all_.ColumnsOf(row_);
-  for (size_t i = 0; i < columns.size(); ++i) {
+  const std::vector<size_t> poses = all_.PosesOf(pose_);
+  for (size_t i = 0; i < poses.size(); ++i) {
     if (jacobians[i] != nullptr) {
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>> by_pose(
           jacobians[i], num_residuals(), 7);
       by_pose.setZero();
-      by_pose.topLeftCorner<6, 6>() = all_.JacobianBlock(row_, columns[i]);
+      by_pose.topLeftCorner<6, 6>() =
+          all_.sparse_
+              ? BlockCholesky::Block(all_.sparse_->At(poses[i], pose_).transpose())
+              : all_.form_.JacobianBlock<6>(first, 6 * static_cast<Eigen::Index>(poses[i]));
     }
   }
   return true;
@@ -89,49 +52,33 @@ bool ReducedPointsCost::RowsOfPose::Evaluate(double const* const* /*parameters*/
 
 ReducedPointsCost::ReducedPointsCost(EliminatedPoints& points, std::vector<PoseBlock>& poses,
                                      bool is_sparse)
-    : points_(points), poses_(poses), order_(points.moving()) {
-  std::iota(order_.begin(), order_.end(), 0);
+    : points_(points), poses_(poses) {
   if (is_sparse) {
-    const std::vector<std::vector<uint32_t>> coupled = points.CoupledPoses();
-    order_ = OrderOf(coupled);
-    sparse_ = MakeBlocks(coupled, order_);
+    sparse_.emplace(points.CoupledPoses());
   }
   for (size_t i = 0; i < points.moving(); ++i) {
     rows_.emplace_back(*this, i);
   }
 }
 
-std::vector<uint32_t> ReducedPointsCost::ColumnsOf(size_t row) const {
-  std::vector<uint32_t> columns = {static_cast<uint32_t>(row)};
+std::vector<size_t> ReducedPointsCost::PosesOf(size_t pose) const {
+  std::vector<size_t> poses = {pose};
   if (sparse_) {
-    columns.insert(columns.end(), sparse_->RowsOf(row).begin(), sparse_->RowsOf(row).end());
+    poses.insert(poses.end(), sparse_->RowsOf(pose).begin(), sparse_->RowsOf(pose).end());
   } else {
-    columns.resize(order_.size() - row);
-    std::iota(columns.begin(), columns.end(), row);
+    poses.resize(points_.moving() - pose);
+    std::iota(poses.begin(), poses.end(), pose);
   }
-  return columns;
-}
-
-Eigen::Matrix<double, 6, 6> ReducedPointsCost::JacobianBlock(size_t row, size_t column) const {
-  return sparse_ ? sparse_->At(column, row).transpose()
-                 : form_.JacobianBlock<6>(6 * static_cast<Eigen::Index>(row),
-                                          6 * static_cast<Eigen::Index>(column));
+  return poses;
 }
 
 void ReducedPointsCost::AddResiduals(ceres::Problem& problem) {
-  for (size_t row = 0; row < rows_.size(); ++row) {
+  for (size_t i = 0; i < rows_.size(); ++i) {
     std::vector<double*> parameters;
-    for (const uint32_t column : ColumnsOf(row)) {
-      parameters.push_back(poses_[order_[column]].data());
+    for (const size_t pose : PosesOf(i)) {
+      parameters.push_back(poses_[pose].data());
     }
-    problem.AddResidualBlock(&rows_[row], nullptr, parameters);
-  }
-}
-
-void ReducedPointsCost::FollowPoints(int times) {
-  for (int i = 0; i < times; ++i) {
-    PrepareForEvaluation(false, true);
-    points_.Accept();
+    problem.AddResidualBlock(&rows_[i], nullptr, parameters);
   }
 }
 
@@ -151,7 +98,7 @@ void ReducedPointsCost::PrepareForEvaluation(bool evaluate_jacobians, bool new_e
       has_moved_ = false;
     }
     if (sparse_) {
-      points_.Linearize(order_, *sparse_, gradient_);
+      points_.Linearize(*sparse_, gradient_);
       has_form_ = sparse_->Factorise(gradient_);
     } else {
       points_.Linearize(form_.matrix(), gradient_);

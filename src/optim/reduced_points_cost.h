@@ -5,7 +5,7 @@
 #include <ceres/evaluation_callback.h>
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <cstddef>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -29,9 +29,8 @@ namespace hullslam::internal {
 // more residual, sqrt(2 f - |r|^2), whose derivative is zero. Half of the squared norm of all
 // residuals is f. The Jacobian L^T is upper triangular, so the six residuals of a pose depend only
 // on this pose and the poses after it. So the residuals of each pose are a residual block of their
-// own, and Ceres does not multiply the zeros. In a large map most poses share no points. Then the
-// poses are eliminated in an order in which L has few blocks (Amestoy et al. 1996), and only these
-// are stored (BlockCholesky).
+// own, and Ceres does not multiply the zeros. In a large map most poses share no points, so
+// only the blocks of L are stored (BlockCholesky).
 //
 // This object must be the evaluation callback of the problem, because it has to know when Ceres
 // tries other poses and when it accepts them.
@@ -45,38 +44,32 @@ class ReducedPointsCost final : public ceres::EvaluationCallback {
   ReducedPointsCost& operator=(const ReducedPointsCost&) = delete;
 
   // Adds one residual block per moving pose. The problem must not own its cost functions, and this
-  // object must outlive it. The evaluation fails at poses for which a point is not in front of a
-  // camera that sees it as an inlier.
+  // object must outlive it. The evaluation fails where the cost is infinite (EliminatedPoints).
   void AddResiduals(ceres::Problem& problem);
-
-  // Moves the points towards their best positions at the present poses, this often.
-  void FollowPoints(int times);
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:
-  // Six rows of L^T. The last ones include the residual that completes the cost.
+  // The residuals of one pose. Those of the last pose include the one that completes the cost.
   class RowsOfPose final : public ceres::CostFunction {
    public:
-    RowsOfPose(const ReducedPointsCost& all, size_t row);
+    RowsOfPose(const ReducedPointsCost& all, size_t pose);
     bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override;
 
    private:
     const ReducedPointsCost& all_;
-    const size_t row_;  // counts blocks, as all rows and columns here
+    const size_t pose_;
   };
 
-  // The columns of the blocks of L^T in a row that may not be zero.
-  std::vector<uint32_t> ColumnsOf(size_t row) const;
-  Eigen::Matrix<double, 6, 6> JacobianBlock(size_t row, size_t column) const;
+  // The poses on which the residuals of a pose depend.
+  std::vector<size_t> PosesOf(size_t pose) const;
   const Eigen::VectorXd& residual() const {
     return sparse_ ? sparse_->residual() : form_.residual();
   }
 
   EliminatedPoints& points_;
   std::vector<PoseBlock>& poses_;
-  std::vector<uint32_t> order_;  // the pose of each row
   std::optional<BlockCholesky> sparse_;
   std::deque<RowsOfPose> rows_;
   std::vector<Rigid3> cam_from_world_;

@@ -20,8 +20,6 @@ namespace hullslam::internal {
 // which is at most N. One more residual
 //   r_last = sqrt(N - |r'|^2)
 // with zero derivative makes the squared norm equal to N.
-//
-// Compute() factorises; residual(), jacobian() and LastResidual() return r', J' and r_last.
 template <int kSize>
 class SquareRootForm {
  public:
@@ -48,8 +46,8 @@ class SquareRootForm {
   }
   Matrix& matrix() { return matrix_; }
 
-  const Vector& residual() const { return residual_; }
-  // The last residual, if the squares of all residuals add up to `squared_norm`.
+  const Vector& residual() const { return residual_; }  // r'
+  // r_last, if the squares of all residuals add up to `squared_norm`.
   double LastResidual(double squared_norm) const {
     return std::sqrt(std::max(0.0, squared_norm - residual_.squaredNorm()));
   }

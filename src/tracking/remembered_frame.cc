@@ -31,8 +31,7 @@ Detection Slim(Detection detection, const PinholeCamera& camera, const ObjectOpt
   return detection;
 }
 
-// The objects that have replaced the objects, or the objects themselves; invalid if they were
-// erased or are not mapped, because only mapped ones constrain poses.
+// The objects that have replaced them; invalid where there is no mapped one to constrain poses.
 std::vector<ObjectId> Newest(const Map& map, std::vector<ObjectId> ids) {
   for (ObjectId& id : ids) {
     id = map.Resolve(id);

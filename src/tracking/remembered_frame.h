@@ -27,8 +27,7 @@ struct RememberedFrame {
     float depth = 0.0f;           // as in FrameFeatures
     LandmarkId landmark;
   };
-  // The frame with the keypoints, depths and detections that are kept.
-  Frame MakeFrame() const;
+  Frame MakeFrame() const;  // with the keypoints, depths and detections that are kept
 
   FrameId id;
   std::vector<Point> points;
