@@ -21,13 +21,13 @@ constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that we
 Detection Slim(Detection detection, const PinholeCamera& camera, const ObjectOptions& options) {
   if (TakesLines(options.pose.constraint.residual)) {
     detection.contour = {};
-    if (!camera.IsDistorted()) {  // else ScaleToRaw needs the hull
-      detection.hull = {};
+    if (!camera.IsDistorted()) {                        // else ScaleToRaw needs the hull
+      detection.hull = std::vector<Eigen::Vector2d>();  // {} would keep the memory
     }
   }
-  detection.embedding = {};
+  detection.embedding = std::vector<float>();
   detection.points = {};
-  detection.keypoints = {};
+  detection.keypoints = std::vector<uint32_t>();
   return detection;
 }
 

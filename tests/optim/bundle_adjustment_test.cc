@@ -2,10 +2,12 @@
 #include "optim/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <set>
 #include <string>
 #include <utility>
@@ -503,6 +505,31 @@ TEST_F(BundleAdjustment, OfAnEmptyWindowIsEmpty) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
   }
 }
+
+#ifndef __SANITIZE_ADDRESS__
+// The resident memory of this process, bytes.
+size_t Resident() {
+  size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages >> pages;
+  return pages * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// A global adjustment needs much memory, so free memory between used blocks is given back before.
+TEST_F(BundleAdjustment, OfAnIslandGivesFreeMemoryBack) {
+  constexpr size_t kBlocks = 1000;
+  constexpr size_t kBytes = 60'000;
+  std::vector<std::vector<char>> blocks;
+  for (size_t i = 0; i < kBlocks; ++i) {
+    blocks.emplace_back(kBytes, 'x');
+  }
+  for (size_t i = 0; i < kBlocks; i += 2) {
+    blocks[i] = std::vector<char>();
+  }
+  const size_t before = Resident();
+  AdjustIsland(made_.map, IslandId(0), world_.sensor(), {}, nullptr);
+  EXPECT_LT(Resident() + kBlocks / 4 * kBytes, before);
+}
+#endif
 
 }  // namespace
 

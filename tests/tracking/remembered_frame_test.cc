@@ -235,7 +235,8 @@ TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   EXPECT_TRUE(kept.hull.empty());
   EXPECT_TRUE(kept.contour.empty());
   EXPECT_TRUE(kept.points.empty());
-  EXPECT_TRUE(kept.embedding.empty());
+  EXPECT_EQ(kept.embedding.capacity(), 0u);
+  EXPECT_EQ(kept.keypoints.capacity(), 0u);
   ObjectOptions options;
   options.pose.constraint.residual = ObjectResidual::kAlgebraicPoint;  // needs the contour
   EXPECT_FALSE(Remember(report_, world_->sensor().camera, options).detections[1].contour.empty());
