@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <glog/logging.h>
-#include <malloc.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -42,7 +41,6 @@ void PrepareStreams() {
 }
 
 int CallWithStack(const std::function<int()>& work) {
-  ::mallopt(M_ARENA_MAX, 2);  // with a heap per thread, each would keep free memory for itself
   constexpr size_t kUsual = 8 << 20;
   // The stacks of threads have by default the limit of the first one.
   pthread_attr_t attributes;
