@@ -14,7 +14,7 @@ namespace {
 BundleOptions Solver(const benchmark::State& state) {
   BundleOptions options;
   if (state.range(1) != 0) {
-    options.max_eliminated = 0;
+    options.max_dense = 0;
   }
   return options;
 }

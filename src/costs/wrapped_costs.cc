@@ -2,7 +2,6 @@
 #include "costs/wrapped_costs.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -72,25 +71,6 @@ double RobustRowsCost::CostOf(double residual) const {
 
 double RobustRowsCost::WeightOf(double residual) const {
   return weight_ * Rho(loss_.get(), residual * residual).second;
-}
-
-DefinedCost::DefinedCost(std::unique_ptr<ceres::CostFunction> cost) : cost_(std::move(cost)) {
-  set_num_residuals(cost_->num_residuals());
-  *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
-}
-
-bool DefinedCost::Evaluate(double const* const* parameters, double* residuals,
-                           double** jacobians) const {
-  if (cost_->Evaluate(parameters, residuals, jacobians)) {
-    return true;
-  }
-  std::fill_n(residuals, num_residuals(), kFar);
-  for (size_t i = 0; jacobians != nullptr && i < parameter_block_sizes().size(); ++i) {
-    if (jacobians[i] != nullptr) {
-      std::fill_n(jacobians[i], num_residuals() * parameter_block_sizes()[i], 0.0);
-    }
-  }
-  return true;
 }
 
 BothViewsCost::BothViewsCost(std::unique_ptr<ceres::CostFunction> left,

@@ -38,23 +38,6 @@ class RobustRowsCost final : public ceres::CostFunction {
   double weight_;
 };
 
-// Wraps a cost. Where it is undefined, returns large constant residuals (kFar) with zero
-// derivatives, as for a far outlier. Ceres rejects every step to parameters at which a cost is
-// undefined. So without the wrapper, a single point that a step moves behind one camera would hold
-// the whole map.
-class DefinedCost final : public ceres::CostFunction {
- public:
-  static constexpr double kFar = 100.0;  // sigmas
-
-  explicit DefinedCost(std::unique_ptr<ceres::CostFunction> cost);
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
- private:
-  std::unique_ptr<ceres::CostFunction> cost_;
-};
-
 // The rows of a cost of the left image of a rectified pair, and below them the rows of one of the
 // right image. The right camera is the left one shifted by the baseline b along its x axis, so its
 // pose is the left one's with t - (b, 0, 0)^T.

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/bundle_adjustment.h"
 
-#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "costs/manifolds.h"
-#include "costs/reprojection.h"
-#include "costs/wrapped_costs.h"
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"
 #include "optim/bundle_points.h"
@@ -22,23 +21,11 @@
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
-#include "util/statistics.h"
 
 namespace hullslam {
 namespace {
 
 using internal::Supervision;
-
-std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
-                                              const PointMeasurement& measurement) {
-  std::unique_ptr<ceres::CostFunction> cost;
-  if (measurement.has_depth()) {
-    cost = std::make_unique<RgbdReprojectionCost>(camera, measurement);
-  } else {
-    cost = std::make_unique<ReprojectionCost>(camera, measurement);
-  }
-  return std::make_unique<DefinedCost>(std::move(cost));
-}
 
 // The parameters of a bundle adjustment and the residuals between them.
 class Bundle {
@@ -50,8 +37,7 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>>
-        weights;  // weights of the keypoints of each pose; monocular only
+    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
@@ -103,17 +89,69 @@ class Bundle {
     });
   }
 
+  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
   bool Solve(int iterations, PointLoss loss, Supervision& supervision, BundleResult& result) {
-    const size_t moving = window_.moving.size();
-    const bool eliminates = moving > 0 && moving <= options_.max_eliminated;
-    return eliminates ? SolveEliminated(iterations, loss, supervision, result)
-                      : SolveSparse(iterations, loss, supervision, result);
+    const bool is_sparse = window_.moving.size() > options_.max_dense;
+    internal::FollowOptions follow = options_.follow;
+    if (is_sparse) {  // in a large map there is always a point that a step moves behind a camera
+      follow.chi2_behind = 3e4;  // 100 sigmas in each residual
+    }
+    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss, follow);
+    internal::ReducedPointsCost cost(eliminated, poses_, is_sparse);
+    for (int i = 0; window_.moving.empty() && i < iterations; ++i) {
+      cost.PrepareForEvaluation(false, true);  // moves the points
+      eliminated.Accept();
+    }
+    ceres::Problem::Options problem_options;
+    problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.disable_all_safety_checks = true;
+    problem_options.evaluation_callback = &cost;
+    ceres::Problem problem(problem_options);
+    cost.AddResiduals(problem);
+    objects_.AddResiduals(problem, poses_);
+    ceres::Solver::Options solver;
+    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (size_t i = 0; i < window_.moving.size(); ++i) {
+      problem.SetManifold(poses_[i].data(), &manifold_);
+      solver.linear_solver_ordering->AddElementToGroup(poses_[i].data(), 1);
+    }
+    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
+    // If there are objects, Ceres eliminates their half axes.
+    if (objects_.HasMoving()) {
+      solver.linear_solver_type = is_sparse ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
+    } else {
+      solver.linear_solver_type =
+          is_sparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
+    }
+    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    solver.max_num_iterations = iterations;
+    solver.function_tolerance = options_.function_tolerance;
+    solver.num_threads = options_.threads;
+    solver.logging_type = ceres::SILENT;
+    solver.callbacks = {&supervision, &objects_};
+    ceres::Solver::Summary summary;
+    do {
+      ceres::Solve(solver, &problem, &summary);
+      const int evaluations = static_cast<int>(summary.iterations.size());  // with the start
+      result.iterations += evaluations;
+      solver.max_num_iterations -= evaluations - 1;
+    } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
+             objects_.LeaveOutUndefinedObservations());
+    result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
+    if (!summary.IsSolutionUsable()) {
+      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
+                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
+                    summary.message);
+    }
+    return summary.IsSolutionUsable();
   }
 
   void Write(BundleResult& result) {
     for (size_t i = 0; i < window_.moving.size(); ++i) {
       result.poses.emplace_back(window_.moving[i], FromBlock(poses_[i].data()));
     }
+    std::ranges::sort(result.poses, {}, &std::pair<KeyframeId, Rigid3>::first);
     for (size_t i = 0; i < points_.size(); ++i) {
       result.positions.emplace_back(window_.landmarks[i], points_.positions()[i]);
     }
@@ -158,130 +196,6 @@ class Bundle {
     }
   }
 
-  static ceres::Problem::Options ProblemOptions() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
-  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
-  bool SolveEliminated(int iterations, PointLoss loss, Supervision& supervision,
-                       BundleResult& result) {
-    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss,
-                                          options_.follow);
-    internal::ReducedPointsCost cost(eliminated, poses_);
-    ceres::Problem::Options problem_options = ProblemOptions();
-    problem_options.evaluation_callback = &cost;
-    ceres::Problem problem(problem_options);
-    cost.AddResiduals(problem);
-    ceres::Solver::Options solver;
-    // If there are objects, Ceres eliminates their half axes.
-    solver.linear_solver_type =
-        objects_.HasMoving() ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
-    return Run(problem, solver, 0, iterations, supervision, result);
-  }
-
-  // Ceres eliminates the points. The reduced system is sparse.
-  bool SolveSparse(int iterations, PointLoss point_loss, Supervision& supervision,
-                   BundleResult& result) {
-    ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
-    ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
-    ceres::CauchyLoss cauchy(kCauchyScale);
-    std::vector<std::unique_ptr<ceres::CostFunction>> costs;
-    std::vector<std::unique_ptr<ceres::LossFunction>> weighted;
-    ceres::Problem problem(ProblemOptions());
-    for (size_t i = 0; i < points_.size(); ++i) {
-      for (const PointObservation& observation : points_.ObservationsOf(i)) {
-        if (observation.is_inlier) {
-          ceres::LossFunction* loss = nullptr;
-          if (point_loss == PointLoss::kHuber) {
-            loss = observation.measurement.has_depth() ? &with_depth : &without_depth;
-          } else if (point_loss == PointLoss::kCauchy) {
-            loss = &cauchy;
-          }
-          if (observation.weight != 1.0) {
-            weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, observation.weight,
-                                                                   ceres::DO_NOT_TAKE_OWNERSHIP));
-            loss = weighted.back().get();
-          }
-          costs.push_back(MakeCost(camera_, observation.measurement));
-          problem.AddResidualBlock(costs.back().get(), loss, poses_[observation.pose].data(),
-                                   points_.positions()[i].data());
-        }
-      }
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (Eigen::Vector3d& point : points_.positions()) {
-      if (problem.HasParameterBlock(point.data())) {
-        solver.linear_solver_ordering->AddElementToGroup(point.data(), 0);
-      }
-    }
-    solver.linear_solver_type = ceres::SPARSE_SCHUR;
-    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-    // After each step of all parameters, the objects alone are optimised for the new poses. The
-    // residuals of objects are far less linear than those of points. Without this, the solver could
-    // only take short steps, and slow changes of the whole map, such as the correction of its scale
-    // after a loop, would not finish.
-    if (objects_.HasMoving()) {
-      solver.use_inner_iterations = true;
-      solver.inner_iteration_tolerance = options_.function_tolerance;
-      solver.inner_iteration_ordering = objects_.OrderAlone();
-    }
-    return Run(problem, solver, 2, iterations, supervision, result);
-  }
-
-  // Adds objects and poses to the problem and solves it. `axes_group` is the group of the half axes
-  // of the objects in the order of elimination.
-  bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
-           Supervision& supervision, BundleResult& result) {
-    if (solver.linear_solver_ordering == nullptr) {
-      solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    }
-    objects_.AddResiduals(problem, poses_);
-    AddPoses(problem, *solver.linear_solver_ordering);
-    objects_.AddParameters(problem, manifold_, axes_group, *solver.linear_solver_ordering);
-    solver.max_num_iterations = iterations;
-    solver.function_tolerance = options_.function_tolerance;
-    solver.num_threads = options_.threads;
-    solver.logging_type = ceres::SILENT;
-    solver.callbacks.push_back(&supervision);
-    internal::UndefinedObservationStop stop(objects_);
-    solver.callbacks.push_back(&stop);
-    ceres::Solver::Summary summary;
-    do {
-      ceres::Solve(solver, &problem, &summary);
-      const int evaluations = static_cast<int>(summary.iterations.size());  // with the start
-      result.iterations += evaluations;
-      solver.max_num_iterations -= evaluations - 1;
-    } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
-             objects_.LeaveOutUndefinedObservations());
-    result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
-    if (!summary.IsSolutionUsable()) {
-      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
-                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
-                    summary.message);
-    }
-    return summary.IsSolutionUsable();
-  }
-
-  void AddPoses(ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
-    for (size_t i = 0; i < poses_.size(); ++i) {
-      double* pose = poses_[i].data();
-      if (!problem.HasParameterBlock(pose)) {
-        continue;
-      }
-      problem.SetManifold(pose, &manifold_);
-      if (i >= window_.moving.size()) {
-        problem.SetParameterBlockConstant(pose);
-      }
-      ordering.AddElementToGroup(pose, 1);
-    }
-  }
-
   const PinholeCamera& camera_;
   const BundleWindow& window_;
   const BundleOptions& options_;
@@ -293,9 +207,12 @@ class Bundle {
   PoseManifold manifold_;
 };
 
-BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,
+BundleResult Adjust(const Map& map, const Sensor& sensor, BundleWindow window,
                     const BundleOptions& options, Supervision& supervision) {
   BundleResult result;
+  if (window.moving.size() > options.max_dense) {
+    SortForElimination(map, window);
+  }
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
   const BundleRules rules = BundleRules::ForSensor(sensor);
@@ -351,10 +268,12 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
 IslandAdjustment AdjustIsland(const Map& map, IslandId island, const Sensor& sensor,
                               const ObjectOptions& options, const Cancellation* cancellation,
                               const ProgressCallback& on_progress) {
+  malloc_trim(0);  // gives pages that nothing is in back, because this needs much memory
   BundleWindow window = GlobalWindow(map, island, ObjectsToAdjust(options));
   BundleResult result =
       AdjustBundle(map, sensor, window, BundleOptions{.objects = options.bundle}.ForWholeMap(),
                    cancellation, on_progress);
+  malloc_trim(0);
   return {.result = std::move(result), .objects = std::move(window.objects)};
 }
 

@@ -16,13 +16,11 @@ namespace hullslam {
 // Minimises the reprojection errors of the window's landmarks in its keyframes, in two rounds. The
 // second round leaves out the outliers of the first.
 //
-// Ceres solves for poses and objects. In a small window (BundleOptions::max_eliminated) our own
-// code eliminates the landmarks (EliminatedPoints). In a large window Ceres eliminates them, and
-// after each step it moves the objects alone until they fit the new poses. Each object of the
-// window adds the constraints of its detections (MakeObjectConstraint) and a prior at its initial
-// shape (MakeObjectPrior). An observation in which the object reaches the plane of the camera is
-// left out. If the solver fails, the adjustment is repeated without objects, and all objects are
-// reported as failed.
+// Our own code eliminates the landmarks (EliminatedPoints), and Ceres solves for poses and objects.
+// Each object of the window adds the constraints of its detections (MakeObjectConstraint) and a
+// prior at its initial shape (MakeObjectPrior). An observation in which the object reaches the
+// plane of the camera is left out. If the solver fails, the adjustment is repeated without objects,
+// and all objects are reported as failed.
 //
 // A monocular sensor differs in five points: the options are those of ForMonocular(); the standard
 // deviations of keypoints are reduced to those that the errors show (MeasureKeypointPrecision);

@@ -18,11 +18,10 @@ struct BundleOptions {
   int final_iterations = 10;
   double function_tolerance = 1e-4;
   int threads = 1;  // with more than one, the last bits differ from run to run
-  // Up to this number of moving keyframes our own code eliminates the landmarks; with more
-  // keyframes Ceres does. Among 140 poses nearly all pairs share landmarks, so the reduced system
-  // is nearly full, and a dense solver is faster (docs/performance.md).
-  size_t max_eliminated = 140;
-  internal::FollowOptions follow = {};  // for points that our own code eliminates
+  // Up to this number of moving keyframes the reduced system of the poses is dense. Among 140 poses
+  // nearly all pairs share landmarks, so it is nearly full (docs/performance.md).
+  size_t max_dense = 140;
+  internal::FollowOptions follow = {};  // of the points, which our own code eliminates
   ObjectBundleOptions objects = {};
 
   // These options for a whole map. When a step would change the cost by a smaller share than the

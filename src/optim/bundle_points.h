@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct FollowOptions {
   // Another step is only taken if the last one was expected to lower the cost of the point by a
   // larger share than this.
   double worthwhile = 1e-3;
+  // The squared error of a point behind its camera. If it is infinite, one point can hold the map.
+  double chi2_behind = std::numeric_limits<double>::infinity();
 };
 
 // The points of a bundle adjustment and their measurements in its images.
@@ -66,8 +69,7 @@ class BundlePoints {
   size_t Begin(size_t point) const { return point == 0 ? 0 : ends_[point - 1]; }
 
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<PointObservation>
-      observations_;  // those of the first point, then those of the second, and so on
+  std::vector<PointObservation> observations_;  // those of the first point, then of the second ...
   std::vector<size_t> ends_;
 };
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/bundle_window.h"
 
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <set>
 
 #include "map/islands.h"
 #include "map/keyframe_graph.h"
+#include "optim/object_bundle.h"
 
 namespace hullslam {
 namespace {
@@ -93,6 +96,29 @@ BundleWindow GlobalWindow(const Map& map, IslandId island, WindowObjects objects
     window.objects = ObservedObjects(map, window.moving);
   }
   return window;
+}
+
+void SortForElimination(const Map& map, BundleWindow& window) {
+  const auto size = static_cast<int>(window.moving.size());
+  const internal::PoseIndices places = internal::IndexPoses(window);
+  std::vector<Eigen::Triplet<double>> edges;
+  for (int i = 0; i < size; ++i) {
+    edges.emplace_back(i, i, 1.0);  // Eigen's ordering needs the diagonal
+    const KeyframeId id = window.moving[static_cast<size_t>(i)];
+    for (const Covisible& other : map.keyframes().At(id).covisible) {
+      const size_t* const place = places.Find(other.keyframe);
+      if (place != nullptr && *place < window.moving.size()) {
+        edges.emplace_back(i, static_cast<int>(*place), 1.0);
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> graph(size, size);
+  graph.setFromTriplets(edges.begin(), edges.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(graph, order);
+  const std::vector<KeyframeId> before = window.moving;
+  std::ranges::transform(order.indices(), window.moving.begin(),
+                         [&](int place) { return before[static_cast<size_t>(place)]; });
 }
 
 }  // namespace hullslam

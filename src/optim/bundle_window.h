@@ -34,4 +34,8 @@ WindowObjects ObjectsToAdjust(const ObjectOptions& options);
 BundleWindow GlobalWindow(const Map& map, IslandId island,
                           WindowObjects objects = WindowObjects::kNone);
 
+// Sorts the moving keyframes so that few blocks fill in if they are eliminated in this order: by
+// approximate minimum degree in the covisibility graph (Amestoy et al. 1996).
+void SortForElimination(const Map& map, BundleWindow& window);
+
 }  // namespace hullslam

@@ -44,15 +44,11 @@ EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& po
 
 double EliminatedPoints::Loss(double chi2,
                               const BundlePoints::PointObservation& observation) const {
-  switch (loss_) {
-    case PointLoss::kNone:
-      break;
-    case PointLoss::kHuber:
-      return 0.5 * observation.weight * HuberCost(chi2, OutlierBound(observation.measurement));
-    case PointLoss::kCauchy:
-      return 0.5 * observation.weight * CauchyCost(chi2, kCauchyScale);
-  }
-  return 0.5 * observation.weight * chi2;
+  const double loss = loss_ == PointLoss::kHuber
+                          ? HuberCost(chi2, OutlierBound(observation.measurement))
+                      : loss_ == PointLoss::kCauchy ? CauchyCost(chi2, kCauchyScale)
+                                                    : chi2;
+  return 0.5 * observation.weight * loss;
 }
 
 double EliminatedPoints::WeightOf(double chi2,
@@ -73,8 +69,9 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
   for (const BundlePoints::PointObservation& observation :
        std::as_const(points_).ObservationsOf(point)) {
     if (observation.is_inlier) {
-      const Eigen::Vector3d in_camera = poses_[observation.pose] * position;
-      cost += Loss(PointChi2(camera_, observation.measurement, in_camera), observation);
+      const double chi2 =
+          PointChi2(camera_, observation.measurement, poses_[observation.pose] * position);
+      cost += Loss(chi2 < kInfinite ? chi2 : follow_.chi2_behind, observation);
     }
   }
   return cost;
@@ -90,8 +87,8 @@ EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
     }
     const Eigen::Vector3d in_camera = poses_[observation.pose] * position;
     if (in_camera.z() < kMinDepth) {
-      sum.cost = kInfinite;
-      return sum;
+      sum.cost += Loss(follow_.chi2_behind, observation);
+      continue;
     }
     const PointLinearization linear(camera_, observation.measurement, in_camera);
     const double chi2 = linear.residual.squaredNorm();
@@ -144,9 +141,10 @@ double EliminatedPoints::Follow(std::span<const Rigid3> poses) {
 void EliminatedPoints::Accept() { points_.positions() = moved_; }
 
 // A step (w, v) of a pose moves a point x of the camera frame by -[x]_x w + v.
+template <typename BlockAt>
 void EliminatedPoints::AddView(const BundlePoints::PointObservation& observation,
-                               const Eigen::Vector3d& position, PointSystem& point,
-                               Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+                               const Eigen::Vector3d& position, const BlockAt& block_at,
+                               PointSystem& point, Eigen::VectorXd& gradient) {
   const MatrixPose& pose = poses_[observation.pose];
   const Eigen::Vector3d in_camera = pose * position;
   if (in_camera.z() < kMinDepth) {
@@ -161,47 +159,79 @@ void EliminatedPoints::AddView(const BundlePoints::PointObservation& observation
   const Eigen::Matrix3d by_camera_point = weight * linear.Hessian();
   const Eigen::Vector3d slope = weight * linear.Gradient();
   const Eigen::Matrix3d by_rotation = -by_camera_point.colwise().cross(in_camera);  // [x]_x H
-  const Eigen::Index at = 6 * static_cast<Eigen::Index>(observation.pose);
-  hessian.block<3, 3>(at, at) -= by_rotation.rowwise().cross(in_camera.transpose());
-  hessian.block<3, 3>(at + 3, at) += by_rotation.transpose();
-  hessian.block<3, 3>(at + 3, at + 3) += by_camera_point;
+  const auto at = 6 * static_cast<Eigen::Index>(observation.pose);
+  auto&& hessian = block_at(observation.pose, observation.pose);
+  hessian.template block<3, 3>(0, 0) -= by_rotation.rowwise().cross(in_camera.transpose());
+  hessian.template block<3, 3>(3, 0) += by_rotation.transpose();
+  hessian.template block<3, 3>(3, 3) += by_camera_point;
   gradient.segment<3>(at) += in_camera.cross(slope);
   gradient.segment<3>(at + 3) += slope;
   Coupling& coupling = couplings_.emplace_back();
-  coupling.pose = at;
+  coupling.pose = observation.pose;
   coupling.block.topRows<3>().noalias() = by_rotation * pose.rotation;
   coupling.block.bottomRows<3>().noalias() = by_camera_point * pose.rotation;
 }
 
-void EliminatedPoints::Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,
+template <typename BlockAt>
+void EliminatedPoints::Eliminate(const PointSystem& point, double damping, const BlockAt& block_at,
                                  Eigen::VectorXd& gradient) const {
   const Eigen::Matrix3d inverse = DampedInverse(point.hessian, damping);
   for (const Coupling& row : couplings_) {
     const Eigen::Matrix<double, 6, 3> solved = row.block * inverse;
-    gradient.segment<6>(row.pose).noalias() -= solved * point.gradient;
+    gradient.segment<6>(6 * static_cast<Eigen::Index>(row.pose)).noalias() -=
+        solved * point.gradient;
     for (const Coupling& column : couplings_) {
       if (column.pose <= row.pose) {
-        hessian.block<6, 6>(row.pose, column.pose).noalias() -= solved * column.block.transpose();
+        block_at(row.pose, column.pose).noalias() -= solved * column.block.transpose();
       }
     }
   }
 }
 
-void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
-  const auto size = static_cast<Eigen::Index>(6 * moving_);
-  hessian.setZero(size, size);
-  gradient.setZero(size);
+template <typename BlockAt>
+void EliminatedPoints::Sum(const BlockAt& block_at, Eigen::VectorXd& gradient) {
+  gradient.setZero(static_cast<Eigen::Index>(6 * moving_));
   for (size_t i = 0; i < points_.size(); ++i) {
     PointSystem point;
     couplings_.clear();
     for (const BundlePoints::PointObservation& observation :
          std::as_const(points_).ObservationsOf(i)) {
       if (observation.is_inlier) {
-        AddView(observation, points_.positions()[i], point, hessian, gradient);
+        AddView(observation, points_.positions()[i], block_at, point, gradient);
       }
     }
-    Eliminate(point, damping_[i], hessian, gradient);
+    Eliminate(point, damping_[i], block_at, gradient);
   }
+}
+
+void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+  const auto size = static_cast<Eigen::Index>(6 * moving_);
+  hessian.setZero(size, size);
+  const auto block_at = [&](size_t row, size_t column) {
+    return hessian.block<6, 6>(6 * static_cast<Eigen::Index>(row),
+                               6 * static_cast<Eigen::Index>(column));
+  };
+  Sum(block_at, gradient);
+}
+
+void EliminatedPoints::Linearize(BlockCholesky& hessian, Eigen::VectorXd& gradient) {
+  hessian.SetZero();
+  Sum(
+      [&](size_t row, size_t column) -> auto& { return hessian.At(row, column); }, gradient);
+}
+
+std::vector<std::set<uint32_t>> EliminatedPoints::CoupledPoses() const {
+  std::vector<std::set<uint32_t>> coupled(moving_);
+  for (size_t i = 0; i < points_.size(); ++i) {
+    for (const auto& one : std::as_const(points_).ObservationsOf(i)) {
+      for (const auto& other : std::as_const(points_).ObservationsOf(i)) {
+        if (one.is_inlier && other.is_inlier && one.pose < other.pose && other.pose < moving_) {
+          coupled[one.pose].insert(static_cast<uint32_t>(other.pose));
+        }
+      }
+    }
+  }
+  return coupled;
 }
 
 }  // namespace hullslam::internal

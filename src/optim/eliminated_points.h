@@ -3,12 +3,15 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
 #include "geometry/matrix_pose.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
+#include "optim/block_cholesky.h"
 #include "optim/bundle_points.h"
 #include "optim/robust.h"
 
@@ -39,8 +42,8 @@ class EliminatedPoints {
   size_t moving() const { return moving_; }
 
   // Moves every point towards its best position for these poses and returns the cost f. Each point
-  // starts at its accepted position, which does not change before Accept(). The cost is infinite if
-  // a point is nearer than kMinDepth to a camera that sees it as an inlier, or behind it.
+  // starts at its accepted position, which does not change before Accept(). A point that is nearer
+  // than kMinDepth to a camera that sees it as an inlier, or behind it, costs chi2_behind.
   double Follow(std::span<const Rigid3> poses);
   // Accepts the positions that the last Follow() found.
   void Accept();
@@ -49,6 +52,10 @@ class EliminatedPoints {
   // positions and the poses of the last Follow(). The three parameters of the rotation of a pose
   // come before those of its translation.
   void Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
+  // The same for an S that is mostly zero.
+  void Linearize(BlockCholesky& hessian, Eigen::VectorXd& gradient);
+  // Of each moving pose those after it that see one of its points: where S has blocks.
+  std::vector<std::set<uint32_t>> CoupledPoses() const;
 
  private:
   // The cost of one point and its derivatives by the point.
@@ -71,7 +78,7 @@ class EliminatedPoints {
   };
   // Second derivative of the cost of an observation, by the pose and the point.
   struct Coupling {
-    Eigen::Index pose = 0;  // row of its first parameter
+    size_t pose = 0;
     Eigen::Matrix<double, 6, 3> block;
   };
 
@@ -81,9 +88,14 @@ class EliminatedPoints {
   double WeightOf(double chi2, const BundlePoints::PointObservation& observation) const;
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;
+  // `block_at(row, column)` returns a block of S.
+  template <typename BlockAt>
+  void Sum(const BlockAt& block_at, Eigen::VectorXd& gradient);
+  template <typename BlockAt>
   void AddView(const BundlePoints::PointObservation& observation, const Eigen::Vector3d& position,
-               PointSystem& point, Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
-  void Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,
+               const BlockAt& block_at, PointSystem& point, Eigen::VectorXd& gradient);
+  template <typename BlockAt>
+  void Eliminate(const PointSystem& point, double damping, const BlockAt& block_at,
                  Eigen::VectorXd& gradient) const;
 
   PinholeCamera camera_;

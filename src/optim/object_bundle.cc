@@ -66,7 +66,7 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id, const PoseIndices& pos
   for (const ObjectObservation& seen : Thin(outer, static_cast<size_t>(options_.max_outer_views))) {
     AddView(map, seen, landmark.misfit_px, nullptr);
   }
-  object.fixed_part->AddPrior(
+  object.fixed_part->Add(
       MakeObjectPrior(landmark.ellipsoid, object.has_depth, options_.constraint));
 }
 
@@ -120,7 +120,7 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
   }
 }
 
-void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
+void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                                  ceres::ParameterBlockOrdering& ordering) {
   // Ceres sorts the blocks of a group by address. Each group has the blocks of one vector only, so
   // they stay in the order of the vector. With blocks of two vectors the order would depend on
@@ -132,19 +132,8 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
     }
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);
-    ordering.AddElementToGroup(object.log_axes.data(), axes_group);
+    ordering.AddElementToGroup(object.log_axes.data(), 0);
   }
-}
-
-std::shared_ptr<ceres::ParameterBlockOrdering> ObjectBundle::OrderAlone() {
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (Object& object : objects_) {
-    if (!object.is_fixed) {
-      ordering->AddElementToGroup(object.pose.data(), 0);
-      ordering->AddElementToGroup(object.log_axes.data(), 1);
-    }
-  }
-  return ordering;
 }
 
 bool ObjectBundle::HasMoving() const { return !std::ranges::all_of(objects_, &Object::is_fixed); }
@@ -159,16 +148,11 @@ bool ObjectBundle::HasUndefinedObservation() const {
 
 bool ObjectBundle::LeaveOutUndefinedObservations() {
   const bool has_undefined = HasUndefinedObservation();
-  const auto leave_out = [](ObjectSumCost& sum) {
-    if (sum.HasUndefined()) {
-      sum.LeaveOutUndefined();
-    }
-  };
   for (Object& object : objects_) {
-    leave_out(*object.fixed_part);
+    object.fixed_part->LeaveOutUndefined();
   }
   for (Observation& observation : observations_) {
-    leave_out(*observation.cost);
+    observation.cost->LeaveOutUndefined();
   }
   return has_undefined;
 }

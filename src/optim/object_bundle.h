@@ -26,7 +26,7 @@ PoseIndices IndexPoses(const BundleWindow& window);
 
 // The objects of a bundle adjustment: their parameters, their priors, and the constraints between
 // objects and poses that the detections give.
-class ObjectBundle {
+class ObjectBundle final : public ceres::IterationCallback {
  public:
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const PoseIndices& pose_indices, const ObjectBundleOptions& options);
@@ -36,19 +36,21 @@ class ObjectBundle {
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the half axes of the objects into `axes_group` of the ordering, their poses into group 2.
-  void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
+  // Puts the half axes of the objects into group 0 of the ordering, their poses into group 2.
+  void AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                      ceres::ParameterBlockOrdering& ordering);
-  // The order of a step in which only the objects move: first their poses, then their half axes.
-  std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
   // Whether there is an object that is not locked. The locked ones are constant.
   bool HasMoving() const;
 
-  // Returns whether an observation was undefined at the last evaluation. A quadric that reaches the
-  // plane of a camera has no projected ellipse there, so the cost of this observation is undefined,
-  // and Ceres rejects the step. One object beside one camera would then hold the whole map, so such
-  // an observation has to be left out.
+  // Whether an observation was undefined at the last evaluation. A quadric that reaches the plane
+  // of a camera has no projected ellipse there, so Ceres rejects the step. One object beside one
+  // camera would then hold the whole map, so such an observation has to be left out.
   bool HasUndefinedObservation() const;
+  // Ends the solution when there is such an observation.
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return HasUndefinedObservation() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                     : ceres::SOLVER_CONTINUE;
+  }
   // Leaves the undefined observations out. Returns whether there were any.
   bool LeaveOutUndefinedObservations();
 
@@ -83,20 +85,6 @@ class ObjectBundle {
   size_t moving_poses_;
   std::vector<Object> objects_;
   std::vector<Observation> observations_;
-};
-
-// Ends the solution when an observation of an object becomes undefined.
-class UndefinedObservationStop final : public ceres::IterationCallback {
- public:
-  explicit UndefinedObservationStop(const ObjectBundle& objects) : objects_(objects) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return objects_.HasUndefinedObservation() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                              : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const ObjectBundle& objects_;
 };
 
 }  // namespace hullslam::internal

@@ -41,10 +41,6 @@ void ObjectSumCost::Add(std::unique_ptr<ceres::CostFunction> cost,
   parts_.push_back({std::move(cost), fixed_camera});
 }
 
-void ObjectSumCost::AddPrior(std::unique_ptr<ceres::CostFunction> prior) {
-  parts_.push_back({std::move(prior), std::nullopt});
-}
-
 bool ObjectSumCost::AddTo(NormalEquations& sum, const Part& part, double const* const* parameters,
                           bool with_derivatives) const {
   const bool is_prior = part.cost->parameter_block_sizes().size() == 2;
@@ -81,10 +77,12 @@ bool ObjectSumCost::AddTo(NormalEquations& sum, const Part& part, double const* 
 }
 
 void ObjectSumCost::LeaveOutUndefined() {
-  const auto undefined = parts_.begin() + static_cast<std::ptrdiff_t>(undefined_.value());
-  left_out_.push_back(std::move(*undefined));
-  parts_.erase(undefined);
-  undefined_.reset();
+  if (undefined_) {
+    const auto undefined = parts_.begin() + static_cast<std::ptrdiff_t>(*undefined_);
+    left_out_.push_back(std::move(*undefined));
+    parts_.erase(undefined);
+    undefined_.reset();
+  }
 }
 
 bool ObjectSumCost::AreLeftOutDefined(double const* const* parameters) const {

@@ -38,17 +38,16 @@ class ObjectSumCost final : public ceres::CostFunction {
   // with PoseManifold, and the logarithms of its half axes.
   explicit ObjectSumCost(Camera camera);
 
-  // Adds a cost with the parameter blocks of QuadricInCamera. It is evaluated at `fixed_camera` if
-  // that is given, otherwise at the pose of the moving camera.
+  // Adds a cost with the parameter blocks of QuadricInCamera, evaluated at `fixed_camera` if that
+  // is given, otherwise at the pose of the moving camera; or one on the pose and half axes of the
+  // object.
   void Add(std::unique_ptr<ceres::CostFunction> cost,
            const std::optional<PoseBlock>& fixed_camera = std::nullopt);
-  // Adds a cost on the pose and the half axes of the object.
-  void AddPrior(std::unique_ptr<ceres::CostFunction> prior);
   size_t size() const { return parts_.size(); }  // costs in the sum
 
   // Whether a cost was undefined at the last evaluation.
   bool HasUndefined() const { return undefined_.has_value(); }
-  // Takes the undefined cost out of the sum.
+  // Takes the undefined cost, if there is one, out of the sum.
   void LeaveOutUndefined();
   // Whether the costs that were left out are defined at these parameters.
   bool AreLeftOutDefined(double const* const* parameters) const;

@@ -20,8 +20,6 @@ namespace hullslam::internal {
 // which is at most N. One more residual
 //   r_last = sqrt(N - |r'|^2)
 // with zero derivative makes the squared norm equal to N.
-//
-// Compute() factorises; residual(), jacobian() and LastResidual() return r', J' and r_last.
 template <int kSize>
 class SquareRootForm {
  public:
@@ -31,34 +29,40 @@ class SquareRootForm {
   // Only the lower half of `hessian` is used. Returns false if it is not positive semidefinite or
   // not finite.
   bool Compute(const Matrix& hessian, const Vector& gradient) {
-    Matrix held = hessian;
+    matrix_ = hessian;
+    return Factorise(gradient);
+  }
+  // The same for the Hessian in matrix(), which is overwritten. So a large one is in memory once.
+  bool Factorise(const Vector& gradient) {
+    const double largest = matrix_.diagonal().maxCoeff();
     // A small diagonal term makes the factor exist even if a parameter has no influence, or if a
     // small eigenvalue is lost in rounding.
-    held.diagonal() += 1e-9 * hessian.diagonal();
-    held.diagonal().array() += 1e-12 * hessian.diagonal().maxCoeff() + 1e-30;
-    factor_.compute(held);
+    matrix_.diagonal() += 1e-9 * matrix_.diagonal();
+    matrix_.diagonal().array() += 1e-12 * largest + 1e-30;
+    const Eigen::LLT<Eigen::Ref<Matrix>> factor(matrix_);
     residual_ = gradient;
-    factor_.matrixL().solveInPlace(residual_);
-    return factor_.info() == Eigen::Success && residual_.allFinite();
+    factor.matrixL().solveInPlace(residual_);
+    return factor.info() == Eigen::Success && residual_.allFinite();
   }
+  Matrix& matrix() { return matrix_; }
 
-  const Vector& residual() const { return residual_; }
-  // The last residual, if the squares of all residuals add up to `squared_norm`.
+  const Vector& residual() const { return residual_; }  // r'
+  // r_last, if the squares of all residuals add up to `squared_norm`.
   double LastResidual(double squared_norm) const {
     return std::sqrt(std::max(0.0, squared_norm - residual_.squaredNorm()));
   }
   // J = L^T.
-  auto jacobian() const { return factor_.matrixU(); }
+  auto jacobian() const { return matrix_.transpose().template triangularView<Eigen::Upper>(); }
   // The block of J that begins at (row, column), which must not lie below the diagonal.
   template <int kBlock>
   Eigen::Matrix<double, kBlock, kBlock> JacobianBlock(Eigen::Index row, Eigen::Index column) const {
     const Eigen::Matrix<double, kBlock, kBlock> block =
-        factor_.matrixLLT().template block<kBlock, kBlock>(column, row).transpose();
+        matrix_.template block<kBlock, kBlock>(column, row).transpose();
     return row == column ? block.template triangularView<Eigen::Upper>().toDenseMatrix() : block;
   }
 
  private:
-  Eigen::LLT<Matrix> factor_;
+  Matrix matrix_;  // L in its lower half
   Vector residual_;
 };
 

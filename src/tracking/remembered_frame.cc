@@ -21,31 +21,22 @@ constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that we
 Detection Slim(Detection detection, const PinholeCamera& camera, const ObjectOptions& options) {
   if (TakesLines(options.pose.constraint.residual)) {
     detection.contour = {};
-    if (!camera.IsDistorted()) {  // else ScaleToRaw needs the hull
-      detection.hull = {};
+    if (!camera.IsDistorted()) {                        // else ScaleToRaw needs the hull
+      detection.hull = std::vector<Eigen::Vector2d>();  // {} would keep the memory
     }
   }
-  detection.embedding = {};
+  detection.embedding = std::vector<float>();
   detection.points = {};
-  detection.keypoints = {};
+  detection.keypoints = std::vector<uint32_t>();
   return detection;
 }
 
-// The landmark that has replaced the landmark, or the landmark itself; invalid if it was erased.
-LandmarkId Newest(const Map& map, LandmarkId landmark) { return map.Resolve(landmark); }
-
-// The same of an object; only mapped ones constrain poses.
-ObjectId Newest(const Map& map, ObjectId id) {
-  const ObjectId newest = map.Resolve(id);
-  const ObjectLandmark* const object = map.objects().Find(newest);
-  const bool is_mapped = object != nullptr && object->state == ObjectState::kMapped;
-  return is_mapped ? newest : ObjectId();
-}
-
-template <typename Id>
-std::vector<Id> Newest(const Map& map, std::vector<Id> ids) {
-  for (Id& id : ids) {
-    id = Newest(map, id);
+// The objects that have replaced them; invalid where there is no mapped one to constrain poses.
+std::vector<ObjectId> Newest(const Map& map, std::vector<ObjectId> ids) {
+  for (ObjectId& id : ids) {
+    id = map.Resolve(id);
+    const ObjectLandmark* const object = map.objects().Find(id);
+    id = object != nullptr && object->state == ObjectState::kMapped ? id : ObjectId();
   }
   return ids;
 }
@@ -70,45 +61,57 @@ void RefineFrame(const Map& map, const TrackingContext& context, const Remembere
   }
   PoseEstimate start;
   start.cam_from_world = map.CamFromWorld(*tracked.from_keyframe);
-  start.landmarks = Newest(map, seen.landmarks);
-  const PoseObjects objects = MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
+  for (const RememberedFrame::Point& point : seen.points) {
+    start.landmarks.push_back(map.Resolve(point.landmark));
+  }
+  const Frame frame = seen.MakeFrame();
+  const PoseObjects objects = MakePoseObjects(map, context.sensor, frame, start.cam_from_world,
                                               Newest(map, seen.objects), context.objects);
-  const PoseEstimate refined =
-      RefinePose(seen.frame, map, context, objects.objects, std::move(start));
+  const PoseEstimate refined = RefinePose(frame, map, context, objects.objects, std::move(start));
   if (refined.EffectiveInliers() >= context.options.min_inliers &&
-      refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
+      refined.inliers >= kMinInlierShare * static_cast<double>(seen.points.size())) {
     tracked.from_keyframe =
         map.RelativeTo(tracked.from_keyframe->reference, refined.cam_from_world);
   }
 }
 
 TrackedFrame& FrameOf(const RememberedFrame& seen, std::span<TrackedFrame> frames) {
-  return frames[seen.frame.id.value - frames.front().frame.value];
+  return frames[seen.id.value - frames.front().frame.value];
 }
 
 }  // namespace
+
+Frame RememberedFrame::MakeFrame() const {
+  Frame frame;
+  frame.id = id;
+  frame.detections = detections;
+  for (size_t i = 0; i < points.size(); ++i) {
+    frame.features.keypoints.push_back({.undistorted = points[i].undistorted, .level = levels[i]});
+    frame.features.depth.push_back(points[i].depth);
+  }
+  return frame;
+}
 
 RememberedFrame Remember(const FrameReport& report, const PinholeCamera& camera,
                          const ObjectOptions& options) {
   RememberedFrame remembered;
   remembered.map_revision = report.map_revision;
-  remembered.frame.id = report.tracked.frame;
-  FrameFeatures& features = remembered.frame.features;
+  remembered.id = report.tracked.frame;
+  const FrameFeatures& features = report.frame->features;
   const std::vector<uint32_t> found = Thin(IndicesOfValid(report.landmarks), kMostLandmarks);
-  features.keypoints.reserve(found.size());
-  features.depth.reserve(found.size());
-  remembered.landmarks.reserve(found.size());
+  remembered.points.reserve(found.size());
+  remembered.levels.reserve(found.size());
   for (const uint32_t i : found) {
-    features.keypoints.push_back(report.frame->features.keypoints[i]);
-    features.depth.push_back(report.frame->features.depth[i]);
-    remembered.landmarks.push_back(report.landmarks[i]);
+    const Keypoint& keypoint = features.keypoints[i];
+    remembered.points.push_back({keypoint.undistorted, features.depth[i], report.landmarks[i]});
+    remembered.levels.push_back(static_cast<uint8_t>(keypoint.level));
   }
   if (options.enabled && options.joint_pose) {
     const std::vector<uint32_t> seen = IndicesOfValid(report.objects);
-    remembered.frame.detections.reserve(seen.size());
+    remembered.detections.reserve(seen.size());
     remembered.objects.reserve(seen.size());
     for (const uint32_t i : seen) {
-      remembered.frame.detections.push_back(Slim(report.frame->detections[i], camera, options));
+      remembered.detections.push_back(Slim(report.frame->detections[i], camera, options));
       remembered.objects.push_back(report.objects[i]);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -17,14 +18,23 @@ namespace hullslam {
 
 // The parts of a tracked frame that are kept to compute its pose again later: at most 400 keypoints
 // that showed a landmark, and the detections that showed a mapped object, without what the
-// residuals of the pose do not need, such as their contours. They take about 8 kB, and 1 kB for
+// residuals of the pose do not need, such as their contours. They take about 7 kB, and 1 kB for
 // each detection. While it is kept, the map must remember what has replaced its landmarks and
 // objects (Tracker::KeepIdsSince).
 struct RememberedFrame {
-  Frame frame;                        // its features have only keypoints and depths
-  std::vector<LandmarkId> landmarks;  // one per keypoint
-  std::vector<ObjectId> objects;      // one per detection
-  uint32_t map_revision = 0;          // as in FrameReport
+  struct Point {
+    Eigen::Vector2f undistorted;  // px, of the keypoint
+    float depth = 0.0f;           // as in FrameFeatures
+    LandmarkId landmark;
+  };
+  Frame MakeFrame() const;  // with the keypoints, depths and detections that are kept
+
+  FrameId id;
+  std::vector<Point> points;
+  std::vector<uint8_t> levels;  // of the pyramid, one per point
+  std::vector<Detection> detections;
+  std::vector<ObjectId> objects;  // one per detection
+  uint32_t map_revision = 0;      // as in FrameReport
 };
 
 // If too many landmarks were found, evenly chosen ones are kept.
@@ -45,7 +55,7 @@ void RefinePoses(const Map& map, const TrackingContext& context,
                  const Cancellation* cancellation = nullptr,
                  const ProgressCallback& on_progress = {});
 
-// The most frames that a run remembers, about 70 MB: as much as a walk of 10 000 frames takes for
+// The most frames that a run remembers, about 55 MB: as much as a walk of 10 000 frames takes for
 // its map. They are the last 2.8 minutes of a camera with 30 Hz. By then the camera has left the
 // place, or has adjusted it with hundreds of later keyframes. Loops that are closed later still
 // move the frame, with its reference.

@@ -139,5 +139,25 @@ TEST(ObjectsToAdjust, AreTheMappedObjectsIfTheOptionIsSet) {
   EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
 }
 
+// In a star of keyframes that see the first one only, the first one must be among the last two.
+TEST(SortForElimination, AKeyframeWithManyNeighboursComesLate) {
+  Map map;
+  BundleWindow window;
+  for (uint32_t i = 0; i < 8; ++i) {
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(i);
+    window.moving.push_back(map.AddKeyframe(frame, Rigid3(), IslandId(0)));
+  }
+  for (uint32_t i = 1; i < 8; ++i) {
+    map.MutableKeyframe(KeyframeId(0)).covisible.push_back({KeyframeId(i), 20});
+    map.MutableKeyframe(KeyframeId(i)).covisible.push_back({KeyframeId(0), 20});
+  }
+  map.MutableKeyframe(KeyframeId(3)).covisible.push_back({KeyframeId(99), 20});  // elsewhere
+  const std::vector<KeyframeId> before = window.moving;
+  SortForElimination(map, window);
+  EXPECT_TRUE(std::ranges::is_permutation(window.moving, before));
+  EXPECT_GE(std::ranges::find(window.moving, KeyframeId(0)) - window.moving.begin(), 6);
+}
+
 }  // namespace
 }  // namespace hullslam

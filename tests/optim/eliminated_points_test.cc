@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "costs/manifolds.h"
-#include "costs/reprojection.h"
 #include "optim/made_points.h"
+#include "optim/reprojection.h"
 #include "util/statistics.h"
 
 namespace hullslam::internal {

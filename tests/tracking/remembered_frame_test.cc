@@ -121,21 +121,32 @@ class RefinePosesTest : public ::testing::Test {
 TEST_F(RefinePosesTest, RemembersTheLandmarksThatWereFound) {
   report_.landmarks[0] = LandmarkId();
   const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
-  EXPECT_EQ(remembered.frame.id, FrameId(5));
-  EXPECT_EQ(remembered.landmarks, Seen());
+  const Frame frame = remembered.MakeFrame();
+  EXPECT_EQ(frame.id, FrameId(5));
+  EXPECT_EQ(remembered.points.front().landmark, Seen().front());
   const FrameFeatures& all = report_.frame->features;
-  const FrameFeatures& features = remembered.frame.features;
+  const FrameFeatures& features = frame.features;
   ASSERT_EQ(features.keypoints.size(), Seen().size());
   EXPECT_EQ(features.keypoints.back().undistorted, all.keypoints.back().undistorted);
   EXPECT_EQ(features.keypoints.back().level, all.keypoints.back().level);
+  EXPECT_EQ(features.depth.back(), all.depth.back());
+}
+
+// A long run remembers thousands of frames, so each must be small.
+TEST_F(RefinePosesTest, APointTakesNoMoreMemoryThanItsNumbers) {
+  EXPECT_EQ(sizeof(RememberedFrame::Point), 4 * sizeof(float));
+  Make({.points = 1500});
+  const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
+  EXPECT_EQ(remembered.points.capacity(), 400u);
+  EXPECT_EQ(remembered.levels.capacity(), 400u);
 }
 
 TEST_F(RefinePosesTest, RemembersAtMost400Landmarks) {
   Make({.points = 1500});
   ASSERT_GT(Seen().size(), 400u);
   const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
-  EXPECT_EQ(remembered.landmarks.size(), 400u);
-  EXPECT_EQ(remembered.landmarks.front(), Seen().front());
+  EXPECT_EQ(remembered.points.size(), 400u);
+  EXPECT_EQ(remembered.points.front().landmark, Seen().front());
   Track(wrong_);
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);
 }
@@ -216,21 +227,21 @@ TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   frame->detections[1].embedding = {0.6f, 0.8f};
   report_.frame = frame;
   const RememberedFrame remembered = Remember(report_, world_->sensor().camera, objects_);
-  ASSERT_EQ(remembered.frame.detections.size(), 3u);
+  ASSERT_EQ(remembered.detections.size(), 3u);
   EXPECT_EQ(remembered.objects.size(), 3u);
   const Detection& seen = report_.frame->detections[1];
-  const Detection& kept = remembered.frame.detections[1];
+  const Detection& kept = remembered.detections[1];
   EXPECT_EQ(kept.lines.size(), seen.lines.size());
   EXPECT_TRUE(kept.hull.empty());
   EXPECT_TRUE(kept.contour.empty());
   EXPECT_TRUE(kept.points.empty());
-  EXPECT_TRUE(kept.embedding.empty());
+  EXPECT_EQ(kept.embedding.capacity(), 0u);
+  EXPECT_EQ(kept.keypoints.capacity(), 0u);
   ObjectOptions options;
   options.pose.constraint.residual = ObjectResidual::kAlgebraicPoint;  // needs the contour
-  EXPECT_FALSE(
-      Remember(report_, world_->sensor().camera, options).frame.detections[1].contour.empty());
+  EXPECT_FALSE(Remember(report_, world_->sensor().camera, options).detections[1].contour.empty());
   options.joint_pose = false;
-  EXPECT_TRUE(Remember(report_, world_->sensor().camera, options).frame.detections.empty());
+  EXPECT_TRUE(Remember(report_, world_->sensor().camera, options).detections.empty());
 }
 
 // The lines of a fisheye lens count in pixels of the raw image, which follow from where they touch
@@ -246,12 +257,12 @@ TEST(RememberedFrame, HasTheLinesOfTheFrameInTheRawImage) {
     report.frame = frame;
     report.objects = {ObjectId(0)};
     const RememberedFrame remembered = Remember(report, camera, ObjectOptions());
-    ASSERT_EQ(remembered.frame.detections.size(), 1u);
+    ASSERT_EQ(remembered.detections.size(), 1u);
     const auto raw_lines = [&](const Detection& detection) {
       return ScaleToRaw(camera, detection, detection.lines);
     };
     const std::vector<SilhouetteLine> expected = raw_lines(frame->detections[0]);
-    const std::vector<SilhouetteLine> lines = raw_lines(remembered.frame.detections[0]);
+    const std::vector<SilhouetteLine> lines = raw_lines(remembered.detections[0]);
     ASSERT_EQ(lines.size(), expected.size());
     for (size_t i = 0; i < lines.size(); ++i) {
       EXPECT_EQ(lines[i].line.Homogeneous(), expected[i].line.Homogeneous());
@@ -304,7 +315,7 @@ TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
   std::vector<TrackedFrame> frames(2, report_.tracked);
   frames[1].frame = FrameId(6);
   std::list<RememberedFrame> remembered(2, Remember(report_, world_->sensor().camera, objects_));
-  remembered.back().frame.id = FrameId(6);
+  remembered.back().id = FrameId(6);
   Cancellation cancellation;
   std::vector<int> progress;
   const ObjectIndex index(made_.map, world_->sensor().camera);
@@ -335,7 +346,7 @@ TEST_F(RefinePosesTest, TheOldestFramesAreRefinedAndForgotten) {
     remembered.push_back(Remember(report_, world_->sensor().camera, objects_));
     RefineOldest(made_.map, context, kMost, remembered, frames);
     ASSERT_EQ(remembered.size(), std::min<size_t>(i + 1, kMost));
-    EXPECT_EQ(remembered.back().frame.id, report_.tracked.frame);
+    EXPECT_EQ(remembered.back().id, report_.tracked.frame);
   }
   for (size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(error_of(frames[i]) < 1e-4, i < frames.size() - kMost) << i;

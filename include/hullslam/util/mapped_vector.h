@@ -52,7 +52,7 @@ class MappedMemory {
 template <typename T>
 class MappedVector {
  public:
-  static constexpr size_t kMostInMemory = 8192;
+  static constexpr size_t kMostInMemory = 1024;
 
   MappedVector() = default;
   MappedVector(MappedVector&& other) noexcept { *this = std::move(other); }

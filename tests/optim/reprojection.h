@@ -1,11 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "costs/reprojection.h"
+#pragma once
 
-#include <Eigen/Core>
+#include <ceres/sized_cost_function.h>
 
+#include <Eigen/Geometry>
+
+#include "camera/point_measurement.h"
 #include "costs/manifolds.h"
 
 namespace hullslam {
+
+// Reprojection error of a landmark, in standard deviations: the first kRows rows of PointResidual
+// at cam_from_world * point,
+//   r = ((u, v, bf / z)(cam_from_world * point) - measured) / (sigma, sigma, disparity_sigma)
+// with sigma = pixel_sigma * scale of the level. There are 2 rows for a landmark seen without
+// depth, and 3 with the disparity. Parameters: cam_from_world (PoseBlock, with PoseManifold), point
+// (m, world frame). Not defined for a point that is not in front of the camera: then Evaluate
+// returns false. The tests compare the library, which eliminates points, with it.
+template <int kRows>
+class PointReprojectionCost final : public ceres::SizedCostFunction<kRows, 7, 3> {
+ public:
+  PointReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)
+      : camera_(camera), measurement_(measurement) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  PinholeCamera camera_;
+  PointMeasurement measurement_;
+};
 
 template <int kRows>
 bool PointReprojectionCost<kRows>::Evaluate(double const* const* parameters, double* residuals,
@@ -38,7 +62,7 @@ bool PointReprojectionCost<kRows>::Evaluate(double const* const* parameters, dou
   return true;
 }
 
-template class PointReprojectionCost<2>;
-template class PointReprojectionCost<3>;
+using ReprojectionCost = PointReprojectionCost<2>;
+using RgbdReprojectionCost = PointReprojectionCost<3>;
 
 }  // namespace hullslam
