@@ -53,15 +53,11 @@ double EliminatedPoints::Loss(double chi2,
 
 double EliminatedPoints::WeightOf(double chi2,
                                   const BundlePoints::PointObservation& observation) const {
-  switch (loss_) {
-    case PointLoss::kNone:
-      break;
-    case PointLoss::kHuber:
-      return observation.weight * HuberWeight(chi2, OutlierBound(observation.measurement));
-    case PointLoss::kCauchy:
-      return observation.weight * CauchyWeight(chi2, kCauchyScale);
-  }
-  return observation.weight;
+  const double weight = loss_ == PointLoss::kHuber
+                            ? HuberWeight(chi2, OutlierBound(observation.measurement))
+                        : loss_ == PointLoss::kCauchy ? CauchyWeight(chi2, kCauchyScale)
+                                                      : 1.0;
+  return observation.weight * weight;
 }
 
 double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
