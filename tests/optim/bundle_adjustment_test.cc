@@ -158,9 +158,8 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
   EXPECT_LT(WorstPointError(result), 1e-4);
 }
 
-// If no pose moves, Ceres eliminates the points, as it does in windows with very many poses.
-// Without the robust loss of the first round, a wrong observation would move its point so far that
-// right observations became outliers too.
+// No pose moves. Without the robust loss of the first round, a wrong observation would move its
+// point so far that right observations became outliers too.
 TEST_F(BundleAdjustment, FindsExactlyTheWrongObservationsOfFixedPosesToo) {
   const auto planted = PlantOutliers(KeyframeId(3), 10);
   BundleWindow window = Window();
@@ -336,8 +335,7 @@ TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
 }
 
 // On the way to its true pose a camera passes a point that only this camera sees. There the cost of
-// the point is not defined, and this must not stop the camera. Ceres eliminates the points, as in
-// large windows.
+// the point is not defined, and this must not stop the camera of a large map.
 TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
   const KeyframeId id(5);
   const Rigid3 truth = made_.map.CamFromWorld(id);

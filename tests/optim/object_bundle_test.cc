@@ -489,7 +489,7 @@ TEST_F(ObjectBundle, TheMisfitOfAnObjectCountsTwiceInTheSigmaOfItsLines) {
   }
 }
 
-// Both solvers: Ceres alone, as in a large map, and with the points eliminated.
+// With a sparse system of the poses, as in a large map, and with a dense one.
 TEST_F(ObjectBundle, ALockedObjectStaysAndTheOthersAreAdjusted) {
   PerturbPoses(0.01, 0.02);
   PerturbObjects(0.2);
