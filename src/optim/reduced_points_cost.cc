@@ -8,6 +8,7 @@
 #include <numeric>
 
 namespace hullslam::internal {
+
 ReducedPointsCost::RowsOfPose::RowsOfPose(const ReducedPointsCost& all, size_t pose)
     : all_(all), pose_(pose) {
   set_num_residuals(pose + 1 < all.points_.moving() ? 6 : 7);

@@ -420,7 +420,7 @@ TEST_F(BundleAdjustment, WithManyPosesRecoversTheTruthAndGivesTheSameBits) {
   }
 }
 
-TEST_F(BundleAdjustment, CeresAloneComesToTheSameResult) {
+TEST_F(BundleAdjustment, ASparseSystemComesToTheSameResult) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "the thread sanitizer cannot follow the OpenMP threads of CHOLMOD";
 #endif
@@ -428,19 +428,19 @@ TEST_F(BundleAdjustment, CeresAloneComesToTheSameResult) {
   const SyntheticMap made = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50});
   const BundleWindow window = GlobalWindow(made.map, IslandId(0));
   BundleOptions options = kPrecise;
-  const BundleResult own = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
+  const BundleResult dense = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
   options.max_dense = window.moving.size() - 1;
-  const BundleResult ceres = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
-  ASSERT_EQ(own.poses.size(), ceres.poses.size());
+  const BundleResult sparse = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
+  ASSERT_EQ(dense.poses.size(), sparse.poses.size());
   double moved = 0.0;
-  for (size_t i = 0; i < own.poses.size(); ++i) {
-    EXPECT_LT(Distance(own.poses[i].second, ceres.poses[i].second), 1e-6);
-    moved +=
-        Distance(own.poses[i].second, made.map.keyframes().At(own.poses[i].first).cam_from_world);
+  for (size_t i = 0; i < dense.poses.size(); ++i) {
+    EXPECT_LT(Distance(dense.poses[i].second, sparse.poses[i].second), 1e-6);
+    moved += Distance(dense.poses[i].second,
+                      made.map.keyframes().At(dense.poses[i].first).cam_from_world);
   }
   EXPECT_GT(moved, 1e-3);
-  EXPECT_EQ(own.outliers, ceres.outliers);
-  EXPECT_NE(own.positions, ceres.positions) << "the last bits show that the solvers differ";
+  EXPECT_EQ(dense.outliers, sparse.outliers);
+  EXPECT_NE(dense.positions, sparse.positions) << "the last bits show that the solvers differ";
 }
 
 // Outliers can only be told after the errors were minimised.
