@@ -139,10 +139,10 @@ using Corners = std::vector<Eigen::Vector2d>;
 template <typename Side>
 void ClipBySide(std::span<const Eigen::Vector2d> polygon, const Side& side, Corners& clipped) {
   clipped.clear();
-  double side_a = polygon.empty() ? 0.0 : side(polygon.front());
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
+    const double side_a = side(a);
     const double side_b = side(b);
     if (side_a >= 0.0) {
       clipped.push_back(a);
@@ -150,7 +150,6 @@ void ClipBySide(std::span<const Eigen::Vector2d> polygon, const Side& side, Corn
     if ((side_a > 0.0 && side_b < 0.0) || (side_a < 0.0 && side_b > 0.0)) {
       clipped.emplace_back(a + side_a / (side_a - side_b) * (b - a));
     }
-    side_a = side_b;
   }
 }
 
